@@ -3,9 +3,10 @@
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
+use oedometer::scenes::{Scene, TERZAGHI, XIE_LEO};
 use oedometer::{
     Case, Column, Configuration, Counters, Drag, ExplicitSettings, IntegratorKind, Kernel, Material, Method,
-    Record, SceneKind, TimeStepRule, run_case,
+    Record, TimeStep, run_case,
 };
 
 /// Cells of the table of linear cost.
@@ -23,7 +24,7 @@ fn main() {
 /// The implicit integrator to `T_v` = 1: its cost must grow as cells times steps. Work counters are
 /// exact; of the wall times, taken in turns over the meshes, the least counts.
 fn print_linear_cost() {
-    let cases = MESHES.map(|cells| implicit_case("GC-SRI-patch", SceneKind::Terzaghi, cells));
+    let cases = MESHES.map(|cells| implicit_case("GC-SRI-patch", &TERZAGHI, cells));
     let mut least = [f64::INFINITY; MESHES.len()];
     let mut counters = [Counters::default(); MESHES.len()];
     for _ in 0..ROUNDS {
@@ -74,22 +75,22 @@ fn moving(bencher: Bencher, cells: usize) {
 /// To `T_v` = 1 with steps that grow with time.
 #[divan::bench(args = [10, 80, 640], sample_count = 10)]
 fn implicit_frozen(bencher: Bencher, cells: usize) {
-    bench_case(bencher, &implicit_case("GC-SRI-patch", SceneKind::Terzaghi, cells), Kernel::Fastest);
+    bench_case(bencher, &implicit_case("GC-SRI-patch", &TERZAGHI, cells), Kernel::Fastest);
 }
 
 #[divan::bench(args = ["TL-GC-SRI-patch", "GC-SRI-patch"], sample_count = 10)]
 fn implicit_large_strain(bencher: Bencher, method: &str) {
-    bench_case(bencher, &implicit_case(method, SceneKind::XieLeo, 10), Kernel::Fastest);
+    bench_case(bencher, &implicit_case(method, &XIE_LEO, 10), Kernel::Fastest);
 }
 
-fn implicit_case(method: &str, scene: SceneKind, cells: usize) -> Case {
+fn implicit_case(method: &str, scene: &'static Scene, cells: usize) -> Case {
     let method = Method::named(method).expect("a known method");
-    let is_large = scene == SceneKind::XieLeo;
+    let is_large = scene == &XIE_LEO;
     Case {
         scene,
         method: method.into(),
         column: Column { load: if is_large { 2e5 } else { 1.0 }, ..Column::default() }.into(),
-        material: Material { law: scene.default_law(), ..Material::default() }.into(),
+        material: Material { law: (scene.soil)().law, ..Material::default() }.into(),
         integrator: IntegratorKind::Implicit,
         formulation: IntegratorKind::Implicit.default_formulation(),
         points_per_cell: if is_large { 4 } else { 2 },
@@ -103,7 +104,7 @@ fn case(method: &str, cells: usize, configuration: Configuration) -> Case {
     let method = Method::named(method).expect("a known method");
     Case {
         task: oedometer::Task::Solve,
-        scene: SceneKind::Terzaghi,
+        scene: &TERZAGHI,
         column: Column::default().into(),
         material: Material::default().into(),
         method: Method { configuration: Some(configuration), ..method }.into(),
@@ -112,7 +113,7 @@ fn case(method: &str, cells: usize, configuration: Configuration) -> Case {
         settings: ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() },
         cells,
         points_per_cell: 2,
-        time_step: TimeStepRule::Stable(0.8),
+        time_step: TimeStep::Stable(0.8),
         time_factors: vec![0.05].into(),
         swept: std::sync::Arc::default(),
     }
@@ -125,5 +126,5 @@ fn bench_case(bencher: Bencher, case: &Case, kernel: Kernel) {
 }
 
 fn solve(case: &Case, kernel: Kernel) -> Record {
-    run_case(case, case.scene.references(), kernel, true, &|_, _| true).expect("a possible column")
+    run_case(case, &case.scene.reference_kinds(), kernel, true, &|_, _| true).expect("a possible column")
 }

@@ -9,10 +9,11 @@
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use oedometer::exact::consolidation;
+use oedometer::scenes::{COSINE_LAYER, TERZAGHI};
 use oedometer::{
     AssembledStep, Body, Column, Configuration, Discrete, EqualSteps, ExplicitSettings, IntegratorKind,
-    Kernel as StepKernel, LinearStepper, Material, Method, Plan, SceneKind, Schedule, Stepper, TimeLimit,
-    TimeStepRule, column_problem, predicted_critical_step,
+    Kernel as StepKernel, LinearStepper, Material, Method, Plan, Schedule, Stepper, TimeLimit, TimeStep,
+    column_problem, predicted_critical_step,
 };
 use std::time::Instant;
 
@@ -77,7 +78,7 @@ fn implicit_step<const C: usize>(bencher: Bencher, method: &str) {
         critical_step: None,
         outputs: Vec::new(),
         history: Vec::new(),
-        rule: TimeStepRule::Seconds(0.01),
+        time_step: TimeStep::Seconds(0.01),
         settings: ExplicitSettings::default(),
         kernel: StepKernel::Fastest,
         integrator: IntegratorKind::Implicit,
@@ -119,8 +120,7 @@ fn crowded_problem(
     let method =
         Method { configuration: Some(configuration), ..Method::named(method).expect("a known method") };
     let (column, soil) = (Column::default(), Material::default());
-    column_problem(SceneKind::Terzaghi, &column, &soil, method, cells, points_per_cell)
-        .expect("the seed column")
+    column_problem(&TERZAGHI, &column, &soil, method, cells, points_per_cell).expect("the seed column")
 }
 
 /// A closure that takes `STEPS` steps.
@@ -187,7 +187,7 @@ fn print_plane_table() {
 fn plane_cost(name: &str, cells: usize) -> [f64; 2] {
     let method = Method::named(name).expect("a known method");
     let (column, soil) = (Column::layer(), Material::default());
-    let problem = column_problem::<2>(SceneKind::CosineLayer, &column, &soil, method, cells, POINTS_PER_CELL)
+    let problem = column_problem::<2>(&COSINE_LAYER, &column, &soil, method, cells, POINTS_PER_CELL)
         .expect("the seed layer");
     let settings = ExplicitSettings::default();
     let dt = 0.5 * predicted_critical_step(&problem, &settings);
@@ -267,8 +267,7 @@ fn print_moving_table() {
         let (column, soil) = (Column { dimensions: 2, ..Column::default() }, Material::default());
         let method = Method::named("GC-SRI-patch").expect("a known method");
         let method = Method { configuration: Some(Configuration::Updated), ..method };
-        let problem =
-            column_problem::<2>(SceneKind::Terzaghi, &column, &soil, method, cells, points_per_cell);
+        let problem = column_problem::<2>(&TERZAGHI, &column, &soil, method, cells, points_per_cell);
         print_moving_costs(problem.expect("the seed column"), points_per_cell * points_per_cell, cells);
     }
 }

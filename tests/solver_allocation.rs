@@ -1,8 +1,9 @@
 //! A step allocates nothing, whatever the method, the configuration and the kernel.
 
+use oedometer::scenes::TERZAGHI;
 use oedometer::{
     AssembledStep, Body, Column, Configuration, Continuity, Discrete, Drag, ExplicitSettings, Material,
-    Method, SceneKind, column_problem, predicted_critical_step,
+    Method, column_problem, predicted_critical_step,
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
@@ -30,7 +31,7 @@ fn column(name: &str, configuration: Configuration, continuity: Continuity) -> D
     let method =
         Method { configuration: Some(configuration), ..Method::named(name).expect("a known method") };
     let soil = Material { continuity, ..Material::default() };
-    column_problem(SceneKind::Terzaghi, &Column::default(), &soil, method, 6, 2).expect("the seed column")
+    column_problem(&TERZAGHI, &Column::default(), &soil, method, 6, 2).expect("the seed column")
 }
 
 /// Whether it steps by assembled operators too. A point-wise step that factors a matrix may allocate.

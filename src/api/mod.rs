@@ -21,21 +21,21 @@ use clap::ValueEnum;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_exact::{AddedKey, ShelfProblem};
 use oedometer_formats::input_file;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::Scene;
 use std::path::PathBuf;
 
 /// A solution by its name, and the scene of its column.
 ///
 /// # Errors
 /// When no solution has the name: lists the names.
-pub fn scene_of(solution: &str) -> Result<(ReferenceKind, SceneKind), ApiError> {
+pub fn scene_of(solution: &str) -> Result<(ReferenceKind, &'static Scene), ApiError> {
     let kind: ReferenceKind = solution.parse().map_err(|_| {
         let shelf = ShelfProblem::ALL.map(ReferenceKind::Shelf);
         let names: Vec<&str> = ReferenceKind::ALL.iter().chain(&shelf).map(|kind| kind.name()).collect();
         let known = names.join(", ");
         ApiError::UnknownName(format!("no exact solution is called `{solution}`; there are {known}"))
     })?;
-    Ok((kind, SceneKind::of_solution(kind)))
+    Ok((kind, Scene::of_solution(kind)))
 }
 
 /// The dotted key of a study file for a bare name, such as `material.porosity` for `porosity`; a name with a dot stays.
@@ -52,17 +52,17 @@ pub fn dotted_key(scene: &str, name: &str) -> Result<String, ApiError> {
     {
         return Ok(added.key.to_owned());
     }
-    let scene = match SceneKind::named(scene) {
+    let scene = match Scene::named(scene) {
         Some(scene) => scene,
         None => scene_of(scene)?.1,
     };
-    let body = scene.table_of_geometry();
+    let body = scene.body.table();
     let tables = [body, "material", "integrator", "points"];
     let found = tables.iter().find(|table| Key::named(name, table).is_some());
     found.map(|table| format!("{table}.{name}")).ok_or_else(|| {
         let names: Vec<&str> =
             [body, "material"].iter().flat_map(|table| Key::in_table(table)).map(|key| key.name).collect();
-        let (scene, known) = (scene.name(), names.join(", "));
+        let (scene, known) = (scene.name, names.join(", "));
         ApiError::UnknownName(format!("no input of `{scene}` is called `{name}`; there are {known}"))
     })
 }
@@ -153,6 +153,7 @@ pub(crate) fn runs_with(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use oedometer_scenes::{COSINE_LAYER, MANDEL, TERZAGHI};
 
     #[test]
     fn a_bare_name_finds_its_table() {
@@ -173,11 +174,9 @@ mod tests {
             told.starts_with(start) && told.ends_with(ShelfProblem::ALL[ShelfProblem::ALL.len() - 1].name()),
             "{told}"
         );
-        for (solution, scene) in [
-            ("terzaghi-incompressible", SceneKind::Terzaghi),
-            ("cosine-layer", SceneKind::CosineLayer),
-            ("mandel", SceneKind::Mandel),
-        ] {
+        for (solution, scene) in
+            [("terzaghi-incompressible", &TERZAGHI), ("cosine-layer", &COSINE_LAYER), ("mandel", &MANDEL)]
+        {
             let (kind, found) = scene_of(solution).expect("a solution");
             assert_eq!((kind.name(), found), (solution, scene));
         }

@@ -18,9 +18,9 @@ use oedometer_problem::integrator::StepBound;
 use oedometer_problem::method::Method;
 use oedometer_problem::outcome::{self, Counters, Failure, FailureKind, RunStatus, StepSizes};
 use oedometer_problem::problem::StartError;
-use oedometer_problem::time_step::TimeStepRule;
+use oedometer_problem::time_step::TimeStep;
 use oedometer_problem::wave_speeds;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::Scene;
 use oedometer_scenes::column::{Column, column_parameters};
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
@@ -112,7 +112,7 @@ fn solved(
 ) -> Result<Outcome, ExactError> {
     let problem = problem_of(case)?;
     let is_bound = case.integrator.step_bound() == StepBound::AllWaves;
-    if is_bound && !matches!(case.time_step, TimeStepRule::Stable(_)) {
+    if is_bound && !matches!(case.time_step, TimeStep::Stable(_)) {
         // The limit is a diagnosis of this program, and no work of the method: it is not timed.
         schedule.critical_step = Some(problem.predicted_critical_step(&case.settings));
     }
@@ -143,7 +143,7 @@ fn outcome_of(run: outcome::Outcome) -> Outcome {
 /// # Errors
 /// When the parameters are impossible.
 pub fn column_problem<const D: usize>(
-    scene: SceneKind,
+    scene: &'static Scene,
     column: &Column,
     soil: &Material,
     method: Method,
@@ -227,7 +227,7 @@ impl ThisProgram {
         Schedule {
             outputs: case.time_factors.iter().map(|factor| parameters.time(*factor)).collect(),
             history,
-            rule: case.time_step,
+            time_step: case.time_step,
             settings: case.settings,
             kernel: self.kernel,
             integrator: case.integrator,
@@ -334,7 +334,7 @@ mod tests {
 
     #[test]
     fn a_search_that_is_stopped_is_a_failed_record_without_steps() {
-        let scene = oedometer_scenes::SceneKind::Terzaghi;
+        let scene = &oedometer_scenes::TERZAGHI;
         let case = Case { cells: 4, ..Case::seed(crate::case::Task::Stability, scene) };
         let stopped = record_of(&case, &[], outcome_of_stopped_search(&case)).expect("a record");
         let failure = stopped.status.failure().expect("it was stopped");

@@ -65,7 +65,7 @@ fn remedy(case: &Case) -> String {
 /// The case by the integrator that takes long steps, where that is much faster: a scene without waves needs no
 /// step that follows them.
 pub fn faster(case: &Case) -> Option<Case> {
-    if case.integrator == IntegratorKind::Implicit || case.task == Task::Stability || case.scene.has_waves() {
+    if case.integrator == IntegratorKind::Implicit || case.task == Task::Stability || case.scene.waves {
         return None;
     }
     let mut other = case.clone();

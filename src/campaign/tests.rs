@@ -16,7 +16,7 @@ use crate::study::file::StudySource;
 use oedometer_exact::ExactError;
 use oedometer_mpm::run::Kernel;
 use oedometer_problem::outcome::{Failure, FailureKind};
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::TERZAGHI;
 use std::path::Path;
 use std::sync::Mutex;
 
@@ -236,8 +236,7 @@ fn a_case_has_the_time_of_its_study_and_is_refused_by_its_numbers() {
     let failure = record.status.failure().expect("late");
     assert_eq!(failure.kind, FailureKind::TimedOut);
     assert_eq!(failure.reason, "it took longer than the 0.000000001 s that its study allows a case");
-    let sound =
-        Case { cells: 2, time_factors: vec![0.1].into(), ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
+    let sound = Case { cells: 2, time_factors: vec![0.1].into(), ..Case::seed(Task::Solve, &TERZAGHI) };
     let refused = |change: fn(&mut Case)| {
         let mut case = sound.clone();
         change(&mut case);
@@ -262,7 +261,7 @@ fn a_case_has_the_time_of_its_study_and_is_refused_by_its_numbers() {
 
 #[test]
 fn a_case_without_a_record_is_named_with_its_reason_and_no_case_where_the_disk_refused() {
-    let case = Case { cells: 7, ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
+    let case = Case { cells: 7, ..Case::seed(Task::Solve, &TERZAGHI) };
     let label = case.label();
     for (error, reason) in [
         (RunError::refused(&case, ExactError::Distance(1.5)), ExactError::Distance(1.5).to_string()),

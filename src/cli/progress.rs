@@ -118,9 +118,9 @@ mod tests {
     use crate::case::Case;
     use crate::case::keys::{Key, Value};
     use oedometer_problem::integrator::IntegratorKind;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::{DYNAMIC_COLUMN, Scene, TERZAGHI};
 
-    fn longest(scene: SceneKind, integrator: IntegratorKind, conductivity: f64) -> LongestCase {
+    fn longest(scene: &'static Scene, integrator: IntegratorKind, conductivity: f64) -> LongestCase {
         let mut case = Case::seed(Task::Solve, scene);
         case.cells = 20;
         case.time_factors = vec![1.0].into();
@@ -132,9 +132,9 @@ mod tests {
 
     #[test]
     fn a_case_of_hours_is_told_with_what_takes_seconds() {
-        let note = note_on_longest(&longest(SceneKind::Terzaghi, IntegratorKind::Explicit, 1e-7));
-        let case = longest(SceneKind::Terzaghi, IntegratorKind::Explicit, 1e-7);
-        let [own, other] = [&case, &longest(SceneKind::Terzaghi, IntegratorKind::Implicit, 1e-7)]
+        let note = note_on_longest(&longest(&TERZAGHI, IntegratorKind::Explicit, 1e-7));
+        let case = longest(&TERZAGHI, IntegratorKind::Explicit, 1e-7);
+        let [own, other] = [&case, &longest(&TERZAGHI, IntegratorKind::Implicit, 1e-7)]
             .map(|one| duration(estimated_seconds(&one.case)));
         let head = format!("warning: soft: {}\n  explicit: about {own}; ", case.case.label());
         let end = ", and the case is ended after 60 min (`case_seconds = 3600`)";
@@ -143,16 +143,16 @@ mod tests {
         assert_eq!(note_on_solve(&case), Some(format!("{head}`--integrator implicit`: {other}{end}")));
         let patient = LongestCase { case_seconds: estimated_seconds(&case.case), ..case };
         assert_eq!(note_on_longest(&patient), Some(format!("{head}{sweep}: {other}")));
-        assert_eq!(note_on_longest(&longest(SceneKind::Terzaghi, IntegratorKind::Explicit, 1e-3)), None);
-        assert_eq!(note_on_longest(&longest(SceneKind::Terzaghi, IntegratorKind::Implicit, 1e-7)), None);
+        assert_eq!(note_on_longest(&longest(&TERZAGHI, IntegratorKind::Explicit, 1e-3)), None);
+        assert_eq!(note_on_longest(&longest(&TERZAGHI, IntegratorKind::Implicit, 1e-7)), None);
     }
 
     #[test]
     fn no_scene_of_waves_is_sent_to_long_steps() {
-        let note = note_on_longest(&longest(SceneKind::DynamicColumn, IntegratorKind::Explicit, 1e-7));
+        let note = note_on_longest(&longest(&DYNAMIC_COLUMN, IntegratorKind::Explicit, 1e-7));
         let remedy = "; larger steps, fewer cells or an earlier last `time_factors` take less";
         assert!(note.is_some_and(|note| !note.contains("implicit") && note.contains(remedy)));
-        let mut search = longest(SceneKind::Terzaghi, IntegratorKind::Explicit, 1e-7);
+        let mut search = longest(&TERZAGHI, IntegratorKind::Explicit, 1e-7);
         (search.case.task, search.case.cells) = (Task::Stability, 100_000);
         search.case_seconds = f64::INFINITY;
         let note = note_on_longest(&search).expect("it is long");

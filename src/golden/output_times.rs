@@ -4,7 +4,7 @@
 use crate::case::keys::{KEYS, Kind};
 use crate::case::{Case, Task, Value};
 use crate::study::units::in_si;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::Scene;
 use std::collections::BTreeMap;
 
 /// Largest relative difference of two times that are the same: round-off of inputs that were written and read.
@@ -67,7 +67,7 @@ fn factors(inputs: &Inputs<'_>) -> Option<Vec<f64>> {
 
 /// Time, s, at which `T_v` = 1 by the inputs of a case; none where one of them is unknown to this program.
 fn seconds_per_time_factor(inputs: &Inputs<'_>) -> Option<f64> {
-    let mut case = Case::seed(Task::Solve, SceneKind::named(inputs.get("scene")?)?);
+    let mut case = Case::seed(Task::Solve, Scene::named(inputs.get("scene")?)?);
     for key in KEYS {
         let Some(typed) = inputs.get(key.name) else { continue };
         let value = match key.kind {

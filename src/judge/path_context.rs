@@ -12,7 +12,7 @@ use crate::record::Record;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};
 use oedometer_convergence::{Context, Limiter, LimiterKind, SeriesDemand, ValueSeries};
 use oedometer_exact::{Reference, ReferenceKind};
-use oedometer_problem::time_step::TimeStepRule;
+use oedometer_problem::time_step::TimeStep;
 use oedometer_scenes::column::column_parameters;
 
 /// Order of the values where neither the method nor the study promises one.
@@ -143,7 +143,7 @@ impl Path<'_> {
 /// In a column, the variation beyond the net changes that the exact profile has too, over those; in
 /// a plane, the variation along all rows and columns of points over that of the exact field, less one.
 pub(crate) fn oscillation_of(record: &Record, measure: &Measure) -> Option<f64> {
-    if record.case.scene.has_plane_fields() {
+    if record.case.scene.body.is_plane() {
         let is_measured = (measure.quantity, measure.sample) == (Quantity::Pressure, Sample::Points);
         let field = PlaneField::of(record, measure.time_factor).ok()?;
         return field.filter(|_| is_measured).map(|field| field.oscillation_index());
@@ -178,10 +178,10 @@ fn formal_order(case: &Case, measure: &Measure) -> Option<f64> {
 fn step_limiter(case: &Case) -> Option<Limiter> {
     let of_steps = case.integrator.order_in_time(&case.settings);
     let (name, order) = match case.time_step {
-        TimeStepRule::Stable(_) | TimeStepRule::Courant(_) => return None,
-        TimeStepRule::Seconds(_) => ("the time step", Some(of_steps)),
-        TimeStepRule::Growth(_) => ("`growth`", Some(of_steps)),
-        TimeStepRule::Tolerance(_) => ("`tolerance`", None),
+        TimeStep::Stable(_) | TimeStep::Courant(_) => return None,
+        TimeStep::Seconds(_) => ("the time step", Some(of_steps)),
+        TimeStep::Growth(_) => ("`growth`", Some(of_steps)),
+        TimeStep::Tolerance(_) => ("`tolerance`", None),
     };
     Some(Limiter { order, ..Limiter::new(LimiterKind::Step, name) })
 }
@@ -207,7 +207,7 @@ fn model_limiter(finest: &Record, measure: &Measure) -> Option<Limiter> {
     let kind: ReferenceKind = measure.reference.parse().ok()?;
     let difference = case.scene.model_difference(kind, &case.material)?;
     let of = |kind: ReferenceKind| known_reference(case, kind, &[measure.time_factor]).ok();
-    let (own, other) = (of(case.scene.references()[0].for_soil(&case.material))?, of(kind)?);
+    let (own, other) = (of(case.scene.references[0].kind.for_soil(&case.material))?, of(kind)?);
     let magnitude = if measure.quantity == Quantity::Settlement {
         let settlement = |reference: &Reference| reference.settlement(measure.time_factor).ok();
         Some((settlement(&own)? / settlement(&other)? - 1.0).abs()).filter(|ratio| ratio.is_finite())?
@@ -314,7 +314,7 @@ mod tests {
         let mut case = records("{ growth = 0.02 }", "[4, 8]").remove(0).case;
         case.integrator = IntegratorKind::SemiImplicit;
         assert_eq!(step_limiter(&case).and_then(|limiter| limiter.order), Some(1.0));
-        for rule in [TimeStepRule::Stable(0.8), TimeStepRule::Courant(0.5)] {
+        for rule in [TimeStep::Stable(0.8), TimeStep::Courant(0.5)] {
             assert_eq!(step_limiter(&Case { time_step: rule, ..case.clone() }), None);
         }
     }

@@ -1,7 +1,7 @@
 //! Groups the records of a study into paths along an axis, with their series of errors.
 
 pub(crate) use crate::case::grouping::grouped;
-use crate::case::{Quantity, Sample, step_label};
+use crate::case::{Quantity, Sample};
 use crate::judge::error_place::place_in_kept;
 use crate::measure::fields::relative_error;
 use crate::record::{Record, Status};
@@ -205,7 +205,7 @@ impl<'a> Path<'a> {
             method,
             has_step.then(|| case.integrator.name().to_owned()),
             // Steps of the explicit integrator follow its limit, and say little about the result.
-            (has_step && self.axis != Axis::TimeStep).then(|| step_label(&case.time_step)),
+            (has_step && self.axis != Axis::TimeStep).then(|| case.time_step.to_string()),
             cells,
             (self.axis != Axis::PointsPerCell).then(|| format!("{} points per cell", case.points_per_cell)),
             variant,
@@ -258,8 +258,8 @@ mod tests {
     use super::*;
     use crate::campaign::runner::{failed_at, records_of};
     use crate::case::Case;
-    use oedometer_problem::time_step::TimeStepRule;
-    use oedometer_scenes::SceneKind;
+    use oedometer_problem::time_step::TimeStep;
+    use oedometer_scenes::COSINE_LAYER;
 
     /// Whether two cases differ along an axis at most, compared input by input.
     fn alike(a: &Case, b: &Case, axis: Axis) -> bool {
@@ -330,7 +330,7 @@ mod tests {
              integrator = ['implicit']\ncells = [2, 4]\ntime_step = [{ growth = 0.5 }, { growth = 0.3 }, { growth = 0.1 }]\n",
         );
         let is = |record: &Record, cells: usize, growth: f64| {
-            record.case.cells == cells && record.case.time_step == TimeStepRule::Growth(growth)
+            record.case.cells == cells && record.case.time_step == TimeStep::Growth(growth)
         };
         for smallest in [Some(0.1), Some(0.3), None] {
             let paths = StudyPaths::of(&records);
@@ -364,7 +364,7 @@ mod tests {
             (Axis::PointsPerCell, |_| {}, &["MPM", "implicit", step, cells]),
             (
                 Axis::WaterBulkModulus,
-                |case| (case.material.water_bulk_modulus, case.scene) = (1e9, SceneKind::CosineLayer),
+                |case| (case.material.water_bulk_modulus, case.scene) = (1e9, &COSINE_LAYER),
                 &["MPM", "implicit", step, cells, points],
             ),
             (

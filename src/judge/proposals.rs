@@ -12,7 +12,6 @@ use crate::study::check::outputs::output_at;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, Selection, SeriesExpectation};
 use oedometer_convergence::{Class, ErrorBound, OrderBand, SeriesDemand};
 use oedometer_problem::method::Method;
-use oedometer_problem::time_step::TimeStepRule;
 
 /// Room about an order: less than the half order that it is to catch.
 const ROOM_OF_ORDER: f64 = 0.25;
@@ -134,11 +133,7 @@ fn toml_of(value: Value) -> Option<String> {
             }
             format!("{name:?}")
         }
-        Value::TimeStep(TimeStepRule::Stable(share)) => format!("{{ stable = {share:?} }}"),
-        Value::TimeStep(TimeStepRule::Courant(share)) => format!("{{ courant = {share:?} }}"),
-        Value::TimeStep(TimeStepRule::Seconds(seconds)) => format!("{{ seconds = {seconds:?} }}"),
-        Value::TimeStep(TimeStepRule::Growth(growth)) => format!("{{ growth = {growth:?} }}"),
-        Value::TimeStep(TimeStepRule::Tolerance(tolerance)) => format!("{{ tolerance = {tolerance:?} }}"),
+        Value::TimeStep(rule) => format!("{{ {} = {:?} }}", rule.kind().word, rule.number()),
         Value::Word(word) => format!("{word:?}"),
         Value::Flag(flag) => flag.to_string(),
         Value::Count(count) => count.to_string(),

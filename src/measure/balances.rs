@@ -6,6 +6,8 @@ use crate::record::{Balance, HistoryRow, LayerBalance, StartChecks};
 use oedometer_exact::{ExactError, Reference};
 use oedometer_problem::snapshot::Snapshot;
 use oedometer_scenes::column::column_parameters;
+use oedometer_scenes::scene::Body;
+use oedometer_scenes::scene::Question;
 use oedometer_soil::elementary;
 
 /// The start against what the scene expects of it.
@@ -62,10 +64,10 @@ pub fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) 
         water_imbalance: excess / pressed_out,
         internal_force_imbalance: now.totals.internal_force_imbalance,
         // Above one dimension the vertical stress alone is in no balance with the load: the nodes are.
-        equilibrium_residual: if case.scene.needs_two_dimensions() {
-            now.totals.unbalanced_force / (load * case.cell_size())
-        } else {
+        equilibrium_residual: if case.scene.body == Body::Column {
             (squares / now.points.pressure.len() as f64).sqrt()
+        } else {
+            now.totals.unbalanced_force / (load * case.cell_size())
         },
         settlement_curve_gap: 0.0,
         layers: now.totals.double_point.map(|layers| {
@@ -78,9 +80,7 @@ pub fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) 
                 largest_pressure: Some(layers.largest_pressure / load),
             }
         }),
-        spurious_velocity: case
-            .scene
-            .is_at_rest()
+        spurious_velocity: (case.scene.question == Question::Rest)
             .then(|| now.totals.largest_velocity / case.material.hydraulic_conductivity),
     }
 }
@@ -113,7 +113,7 @@ mod tests {
     use super::*;
     use crate::case::Task;
     use oedometer_problem::snapshot::{Samples, Totals, WaterSamples, WaterTotals};
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::{AT_REST, COSINE_LAYER, TERZAGHI};
 
     /// `U = a √T_v` at seven rows from 0.01 to 0.64.
     fn curve() -> Vec<HistoryRow> {
@@ -144,12 +144,12 @@ mod tests {
 
     #[test]
     fn an_unbalanced_force_is_a_share_of_the_load_and_in_the_plane_of_that_on_a_cell() {
-        for scene in [SceneKind::Terzaghi, SceneKind::CosineLayer] {
+        for scene in [&TERZAGHI, &COSINE_LAYER] {
             let case = Case { cells: 5, ..Case::seed(Task::Solve, scene) };
             let load = case.column.pressure_scale();
-            let on = if scene == SceneKind::Terzaghi { load } else { load * case.column.height / 5.0 };
+            let on = if scene == &TERZAGHI { load } else { load * case.column.height / 5.0 };
             let parameters = column_parameters(&case.column, &case.material);
-            let own = Reference::new(case.scene.references()[0], &parameters, &[]).expect("a seed");
+            let own = Reference::new(case.scene.references[0].kind, &parameters, &[]).expect("a seed");
             let mut start = Snapshot::default();
             start.totals.unbalanced_force = 0.3 * on;
             let found = start_checks(&case, Some(&own), &start).expect("a seed").unbalanced_force;
@@ -188,7 +188,7 @@ mod tests {
             totals: totals(5.0, 3e-5, 2e-5),
             ..Snapshot::default()
         };
-        for (scene, height, width) in [(SceneKind::Terzaghi, 2.0, 1.0), (SceneKind::CosineLayer, 2.0, 3.0)] {
+        for (scene, height, width) in [(&TERZAGHI, 2.0, 1.0), (&COSINE_LAYER, 2.0, 3.0)] {
             let mut case = Case { cells: 4, ..Case::seed(Task::Solve, scene) };
             (case.column.height, case.column.load) = (height, 40.0);
             *case.column = case.column.with_extent(3.0);
@@ -211,13 +211,13 @@ mod tests {
             assert_eq!((found.spurious_velocity, found.settlement_curve_gap), (None, 0.0));
         }
         // At rest nothing is applied and what moves counts, over the conductivity of 1e-4 m/s.
-        let rest = Case { cells: 4, ..Case::seed(Task::Solve, SceneKind::AtRest) };
+        let rest = Case { cells: 4, ..Case::seed(Task::Solve, &AT_REST) };
         assert!((balance(&rest, 0.3, &start, &now).spurious_velocity.expect("at rest") - 5.0).abs() < 1e-12);
     }
 
     #[test]
     fn a_start_is_held_against_the_points_the_volume_and_the_pressures_of_its_scene() {
-        let mut case = Case { cells: 4, ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
+        let mut case = Case { cells: 4, ..Case::seed(Task::Solve, &TERZAGHI) };
         (case.column.height, case.column.load) = (2.0, 40.0);
         case.column.points.water_per_cell = 3;
         let undrained = 40.0 / (1.0 + 0.3 * 1.2e6 / 2.2e9);

@@ -4,7 +4,7 @@ use crate::case::Case;
 use crate::record::Groups;
 use oedometer_exact::ReferenceKind;
 use oedometer_problem::integrator::{Formulation, IntegratorKind};
-use oedometer_problem::time_step::TimeStepRule;
+use oedometer_problem::time_step::TimeStep;
 use oedometer_problem::wave_speeds;
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
@@ -41,11 +41,11 @@ const MOST_DAMPED: f64 = 0.1;
 pub fn inertia_rules(case: &Case, reference: ReferenceKind) -> Option<String> {
     // The undrained start is an equilibrium.
     let moves = case.time_factors.iter().any(|time_factor| *time_factor > 0.0);
-    if !moves || case.formulation == Formulation::QuasiStatic || case.scene.is_manufactured() {
+    if !moves || case.formulation == Formulation::QuasiStatic || case.scene.motion.is_some() {
         return None;
     }
     let name = reference.name();
-    if case.scene.has_waves() {
+    if case.scene.waves {
         let wave = SlowestWave::of(case);
         // A load that grows over many periods excites no waves.
         if case.column.loading_time * wave.frequency > LONG_LOADING {
@@ -116,13 +116,8 @@ impl SlowestWave {
         let limit =
             wave_speeds::semi_implicit_limit(&case.material, case.cell_size(), case.has_undamped_motions());
         let step = match case.time_step {
-            TimeStepRule::Stable(share) => share * limit,
-            TimeStepRule::Seconds(seconds) => seconds,
-            TimeStepRule::Courant(share) => {
-                share * case.cell_size()
-                    / wave_speeds::fastest_wave_speed(&case.material, case.material.porosity)
-            }
-            TimeStepRule::Growth(_) | TimeStepRule::Tolerance(_) => return 0.0,
+            TimeStep::Growth(_) | TimeStep::Tolerance(_) => return 0.0,
+            rule => rule.first(&case.step_scales(limit)),
         };
         let by_steps = 0.5 * self.frequency * self.frequency * step;
         let one = case.seconds_per_time_factor();
@@ -230,8 +225,8 @@ mod tests {
 
     #[test]
     fn what_steps_damp_of_a_wave_is_the_most_of_all_outputs() {
-        let mut case = Case::seed(crate::case::Task::Solve, oedometer_scenes::SceneKind::DynamicColumn);
-        (case.integrator, case.time_step) = (IntegratorKind::SemiImplicit, TimeStepRule::Seconds(1e-4));
+        let mut case = Case::seed(crate::case::Task::Solve, &oedometer_scenes::DYNAMIC_COLUMN);
+        (case.integrator, case.time_step) = (IntegratorKind::SemiImplicit, TimeStep::Seconds(1e-4));
         let wave = SlowestWave::of(&case);
         let unit = 1.0 / case.seconds_per_time_factor();
         let damped = |case: &mut Case, times: &[f64]| {
@@ -252,17 +247,15 @@ mod tests {
         let soil = case.material.clone();
         let limit = wave_speeds::semi_implicit_limit(&soil, case.cell_size(), case.has_undamped_motions());
         let crossing = case.cell_size() / wave_speeds::fastest_wave_speed(&soil, soil.porosity);
-        let mut by = |rule: TimeStepRule| {
+        let mut by = |rule: TimeStep| {
             case.time_step = rule;
             damped(&mut case, &times)
         };
-        for (rule, step) in
-            [(TimeStepRule::Stable(0.5), 0.5 * limit), (TimeStepRule::Courant(0.5), 0.5 * crossing)]
-        {
-            assert_eq!(by(rule), by(TimeStepRule::Seconds(step)));
-            assert!(by(rule) > by(TimeStepRule::Seconds(0.5 * step)), "{rule:?}");
+        for (rule, step) in [(TimeStep::Stable(0.5), 0.5 * limit), (TimeStep::Courant(0.5), 0.5 * crossing)] {
+            assert_eq!(by(rule), by(TimeStep::Seconds(step)));
+            assert!(by(rule) > by(TimeStep::Seconds(0.5 * step)), "{rule:?}");
         }
-        for rule in [TimeStepRule::Growth(0.5), TimeStepRule::Tolerance(1e-3)] {
+        for rule in [TimeStep::Growth(0.5), TimeStep::Tolerance(1e-3)] {
             assert_eq!(by(rule), 0.0, "{rule:?} is not taken with these steps");
         }
     }
@@ -273,7 +266,7 @@ mod tests {
         for (porosity, height, stiffness) in
             [(0.3, 1.0, 1e6), (0.5, 1.0, 1e6), (0.2, 1.0, 1e6), (0.3, 3.0, 1e6), (0.3, 1.0, 1e8)]
         {
-            let mut case = Case::seed(crate::case::Task::Solve, oedometer_scenes::SceneKind::DynamicColumn);
+            let mut case = Case::seed(crate::case::Task::Solve, &oedometer_scenes::DYNAMIC_COLUMN);
             case.column.height = height;
             case.column.loading_time = 0.0;
             case.material.porosity = porosity;
@@ -304,7 +297,7 @@ mod tests {
                 open(case);
                 case.formulation = Formulation::VW;
                 case.integrator = IntegratorKind::SemiImplicit;
-                case.time_step = TimeStepRule::Seconds(step);
+                case.time_step = TimeStep::Seconds(step);
                 case.time_factors = vec![1.0 / (frequency * case.seconds_per_time_factor())].into();
             };
             // One radian of the wave: steps take `1 − exp(−ω Δt/2)` of it, and the drag a share that is small here.

@@ -6,7 +6,6 @@ use crate::record::{Balance, ErrorRow, MeasureRow};
 use oedometer_exact::Reference;
 use oedometer_exact::footing::LOAD_FACTOR;
 use oedometer_problem::snapshot::{Samples, Snapshot};
-use oedometer_scenes::SceneKind;
 use oedometer_soil::elementary;
 
 /// Name of the largest nodal velocity over the hydraulic conductivity, of a column at rest.
@@ -24,7 +23,7 @@ pub fn measures_of(
     snapshots: &[Snapshot],
 ) -> Vec<MeasureRow> {
     let Some(own) = own else { return Vec::new() };
-    if case.scene == SceneKind::Footing {
+    if case.scene.measures(Quantity::LoadFactor) {
         return measures_of_footing(case, own, snapshots);
     }
     let mut measures = Vec::new();
@@ -110,7 +109,7 @@ pub fn pressure_at_the_end(heights: &[f64], pressures: &[f64]) -> f64 {
 /// Load factor `F/(B c_u)` of the force, N/m, on half of a plate; none in other scenes.
 pub fn load_factor(case: &Case, force: f64) -> Option<f64> {
     let half = 0.5 * case.column.footing.width * case.material.undrained_strength;
-    (case.scene == SceneKind::Footing).then(|| force / half)
+    (case.scene.measures(Quantity::LoadFactor)).then(|| force / half)
 }
 
 /// The error of the load factor of a state.
@@ -161,6 +160,7 @@ mod tests {
     use super::*;
     use crate::case::Task;
     use oedometer_exact::reference::ReferenceKind;
+    use oedometer_scenes::FOOTING;
     use oedometer_scenes::column::column_parameters;
 
     #[test]
@@ -172,7 +172,7 @@ mod tests {
 
     #[test]
     fn the_slope_of_a_plateau_is_that_of_the_last_two_loads_in_time() {
-        let mut case = Case::seed(Task::Solve, SceneKind::Footing);
+        let mut case = Case::seed(Task::Solve, &FOOTING);
         case.time_factors = vec![0.5, 1.0, 1.25].into();
         let half = 0.5 * case.column.footing.width * case.material.undrained_strength;
         let snapshots =

@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn a_reference_is_as_accurate_as_at_its_worst_output_wherever_that_stands() {
-        let mut case = Case::seed(crate::case::Task::Solve, oedometer_scenes::SceneKind::Terzaghi);
+        let mut case = Case::seed(crate::case::Task::Solve, &oedometer_scenes::TERZAGHI);
         let mut times = [1e-4, 0.1, 1.0];
         let bounds = |case: &Case| -> (Vec<f64>, ReferenceUse) {
             let parameters = column_parameters(&case.column, &case.material);

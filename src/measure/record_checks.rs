@@ -6,7 +6,7 @@ use oedometer_problem::formulation::Formulation;
 use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::method::Basis;
 use oedometer_problem::outcome::FailureKind;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::scene::{Body, Check, LoadKind, Question};
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::wording::{short, typed};
 
@@ -217,20 +217,20 @@ fn deforms(record: &Record) -> bool {
 /// Unbalanced force that a start may have, over the force of the load on a cell.
 fn unbalanced_bound(record: &Record) -> Result<f64, &'static str> {
     let (case, soil) = (&record.case, &record.case.material);
-    if case.scene.is_manufactured() {
-        return Err("the body forces that make the motion start suddenly");
+    if let Some(why) = case.scene.unjudged(Check::Unbalanced) {
+        return Err(why);
     }
     let is_spline = case.is_spline() && !case.scene.start_is_solved();
-    if is_spline && case.scene.is_at_rest() {
+    if is_spline && case.scene.question == Question::Rest {
         return Err(SPLINES);
     }
-    if case.scene.has_waves() || case.column.loading_time > 0.0 || is_spline {
+    if case.scene.waves || case.column.loading_time > 0.0 || is_spline {
         // At most the load itself is unbalanced.
         return Ok(1.0 + ROUND_OFF);
     }
     // Points that have moved by the undrained strain lie off their lattice by as much: in the plane by a shear strain, which
     // the water does not hinder.
-    let water = if case.scene.needs_two_dimensions() { 0.0 } else { soil.coupling_modulus() };
+    let water = if case.scene.body == Body::Column { soil.coupling_modulus() } else { 0.0 };
     let strain = case.column.pressure_scale() / (soil.oedometric_modulus() + water);
     let moved = if deforms(record) { strain * (case.cells * case.points_per_cell) as f64 } else { 0.0 };
     Ok(UNBALANCED + SHIFTED * (shift(record) + moved))
@@ -239,17 +239,17 @@ fn unbalanced_bound(record: &Record) -> Result<f64, &'static str> {
 /// Residual of the equilibrium that a sound run stays within.
 fn equilibrium_bound(record: &Record) -> Result<f64, &'static str> {
     let case = &record.case;
-    if case.scene.is_manufactured() {
-        return Err("a motion made by body forces does not balance a load");
+    if let Some(why) = case.scene.unjudged(Check::Equilibrium) {
+        return Err(why);
     }
-    if case.scene.has_waves() && case.formulation != Formulation::QuasiStatic {
+    if case.scene.waves && case.formulation != Formulation::QuasiStatic {
         return Err("waves are not an error; the energy of the run is checked");
     }
     if case.is_spline() {
         return Err(SPLINES);
     }
     if deforms(record) {
-        let unjudged = if case.scene.needs_two_dimensions() || case.column.points.has_two_sets() {
+        let unjudged = if case.scene.body != Body::Column || case.column.points.has_two_sets() {
             Some(MOVING)
         } else if record.groups.inertia > LITTLE_INERTIA {
             Some("inertia carries a part of the load")
@@ -261,7 +261,7 @@ fn equilibrium_bound(record: &Record) -> Result<f64, &'static str> {
         let bound = OUT_OF_BALANCE_MOVING[usize::from(jumps)] + SHIFTED * shift(record);
         return unjudged.map_or(Ok(bound), Err);
     }
-    if case.scene.needs_two_dimensions() && case.integrator == IntegratorKind::Implicit {
+    if case.scene.body != Body::Column && case.integrator == IntegratorKind::Implicit {
         // The residual of the nodes, which the solver balances.
         return Ok(UNBALANCED);
     }
@@ -271,22 +271,19 @@ fn equilibrium_bound(record: &Record) -> Result<f64, &'static str> {
 /// Pressure over the load that consolidation and waves can reach on a mesh, or why there is no bound.
 fn most_pressure(record: &Record) -> Result<f64, &'static str> {
     let case = &record.case;
-    if case.scene.is_manufactured() {
-        return Err("body forces make the pressure");
-    }
-    if case.scene.is_at_rest() {
-        return Err("the pressures are those of the weight");
+    if let Some(why) = case.scene.unjudged(Check::Pressure) {
+        return Err(why);
     }
     let is_full = case.method.built_in().is_some_and(|method| !method.pressure.is_by_cells());
-    let is_footing = case.scene == SceneKind::Footing;
-    let is_stiff = case.scene.is_a_layer() && case.material.poissons_ratio > LOCKING;
-    if is_stiff || is_full && (is_footing || case.scene.is_a_layer()) {
+    let is_pushed = case.scene.load == LoadKind::Pushed;
+    let is_stiff = case.scene.locks && !is_pushed && case.material.poissons_ratio > LOCKING;
+    if is_stiff || is_full && case.scene.locks {
         return Err("methods lock under a load that keeps the volume");
     }
-    if is_footing {
+    if is_pushed {
         return Ok(MOST_PRESSURE_UNDER_A_PLATE);
     }
-    let has_waves = case.scene.has_waves() || record.groups.inertia > LITTLE_INERTIA;
+    let has_waves = case.scene.waves || record.groups.inertia > LITTLE_INERTIA;
     Ok(MOST_PRESSURE[usize::from(has_waves)])
 }
 
@@ -300,8 +297,8 @@ fn shift(record: &Record) -> f64 {
 /// conserve water.
 fn water_bound(record: &Record) -> Result<f64, &'static str> {
     let case = &record.case;
-    if case.scene == SceneKind::Footing {
-        return Err("no water leaves the soil under a footing");
+    if let Some(why) = case.scene.unjudged(Check::Water) {
+        return Err(why);
     }
     if case.material.continuity == Continuity::ConstantPorosityGradient {
         return Err("this form of the continuity does not conserve water");
@@ -309,10 +306,10 @@ fn water_bound(record: &Record) -> Result<f64, &'static str> {
     if case.column.points.jitter != Arrangement::default().jitter {
         return Err("domains of scattered points overlap: their volumes are not those of the cells");
     }
-    if case.scene.is_at_rest() && case.is_spline() {
+    if case.scene.question == Question::Rest && case.is_spline() {
         return Err(SPLINES);
     }
-    if case.scene.presses_out_no_water() && !deforms(record) {
+    if case.scene.load == LoadKind::Cosine && !deforms(record) {
         // Both sides of the balance vanish.
         return Ok(ROUND_OFF);
     }
@@ -384,11 +381,12 @@ mod tests {
     use crate::record::LayerBalance;
     use oedometer_problem::method::Method;
     use oedometer_problem::outcome::Failure;
+    use oedometer_scenes::TERZAGHI;
 
     #[test]
     fn a_pressure_may_reach_what_fronts_or_waves_make_of_the_load_and_is_not_judged_where_methods_lock() {
-        use SceneKind::{
-            AtRest, CosineLayer, DynamicColumn, Footing, Mandel, ManufacturedBox, Terzaghi, XieLeo,
+        use oedometer_scenes::{
+            AT_REST, COSINE_LAYER, DYNAMIC_COLUMN, FOOTING, MANDEL, MANUFACTURED_BOX, TERZAGHI, XIE_LEO,
         };
         let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP']\n\
                     integrator = ['implicit']\ncells = [2]\n";
@@ -396,21 +394,21 @@ mod tests {
         let locks = Err("methods lock under a load that keeps the volume");
         let (little, more, usual) = (LITTLE_INERTIA, 1.001 * LITTLE_INERTIA, 0.25);
         for (scene, method, inertia, ratio, bound) in [
-            (Terzaghi, "GIMP", 0.0, usual, Ok(1.6)),
-            (Terzaghi, "GIMP", little, 0.499, Ok(1.6)),
-            (Terzaghi, "GIMP", more, usual, Ok(3.0)),
-            (XieLeo, "GIMP", 1.0, usual, Ok(3.0)),
-            (Mandel, "GIMP", little, usual, Ok(1.6)),
-            (DynamicColumn, "GIMP", 0.0, usual, Ok(3.0)),
-            (DynamicColumn, "GIMP", more, usual, Ok(3.0)),
-            (CosineLayer, "GIMP-SRI", little, LOCKING, Ok(1.6)),
-            (CosineLayer, "GIMP-SRI", more, LOCKING, Ok(3.0)),
-            (CosineLayer, "GIMP-SRI", little, 0.496, locks),
-            (CosineLayer, "GIMP", little, usual, locks),
-            (Footing, "GIMP-SRI", more, 0.499, Ok(20.0)),
-            (Footing, "GIMP", little, usual, locks),
-            (AtRest, "GIMP", more, usual, Err("the pressures are those of the weight")),
-            (ManufacturedBox, "GIMP-SRI", more, usual, Err("body forces make the pressure")),
+            (&TERZAGHI, "GIMP", 0.0, usual, Ok(1.6)),
+            (&TERZAGHI, "GIMP", little, 0.499, Ok(1.6)),
+            (&TERZAGHI, "GIMP", more, usual, Ok(3.0)),
+            (&XIE_LEO, "GIMP", 1.0, usual, Ok(3.0)),
+            (&MANDEL, "GIMP", little, usual, Ok(1.6)),
+            (&DYNAMIC_COLUMN, "GIMP", 0.0, usual, Ok(3.0)),
+            (&DYNAMIC_COLUMN, "GIMP", more, usual, Ok(3.0)),
+            (&COSINE_LAYER, "GIMP-SRI", little, LOCKING, Ok(1.6)),
+            (&COSINE_LAYER, "GIMP-SRI", more, LOCKING, Ok(3.0)),
+            (&COSINE_LAYER, "GIMP-SRI", little, 0.496, locks),
+            (&COSINE_LAYER, "GIMP", little, usual, locks),
+            (&FOOTING, "GIMP-SRI", more, 0.499, Ok(20.0)),
+            (&FOOTING, "GIMP", little, usual, locks),
+            (&AT_REST, "GIMP", more, usual, Err("the pressures are those of the weight")),
+            (&MANUFACTURED_BOX, "GIMP-SRI", more, usual, Err("body forces make the pressure")),
         ] {
             record.case.scene = scene;
             record.case.method = Method::named(method).expect("a method").into();
@@ -464,7 +462,7 @@ mod tests {
                 let changes: [fn(&mut Record); 3] = [
                     |one| one.case.column.points.sets = 1,
                     |one| one.case.material.continuity = Continuity::ConstantPorosityGradient,
-                    |one| one.case.scene = SceneKind::Terzaghi,
+                    |one| one.case.scene = &TERZAGHI,
                 ];
                 for change in changes {
                     let mut other = burst.clone();

@@ -152,7 +152,7 @@ pub fn constant_recovery_error(case: &Case) -> f64 {
 mod tests {
     use super::*;
     use crate::case::Task;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::TERZAGHI;
     use std::cell::Cell;
 
     #[test]
@@ -166,7 +166,7 @@ mod tests {
             };
             known_or(&known, key_of(case, ReferenceKind::Terzaghi, times), make).expect("made")
         };
-        let case = Case::seed(Task::Solve, SceneKind::Terzaghi);
+        let case = Case::seed(Task::Solve, &TERZAGHI);
         let mut higher = case.clone();
         higher.column.height *= 2.0;
         assert_eq!([ask(&case, &[0.1]), ask(&case, &[0.1])], [case.column.height; 2]);
@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn a_known_reference_is_that_of_the_soil_to_the_bit() {
-        let case = Case::seed(Task::Solve, SceneKind::Terzaghi);
+        let case = Case::seed(Task::Solve, &TERZAGHI);
         let mut softer = case.clone();
         softer.material.youngs_modulus *= 0.5;
         let kind = ReferenceKind::DynamicSingleMode;

@@ -1,11 +1,10 @@
 //! The levels of several paths side by side: each error belongs to its level by the level's value, not by its place.
 
-use crate::case::step_label;
 use crate::judge::paths::{Path, grouped, level_size};
 use crate::record::Record;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
 use oedometer_convergence::ErrorSeries;
-use oedometer_problem::time_step::TimeStepRule;
+use oedometer_problem::time_step::TimeStep;
 
 /// What makes two runs of different paths runs of one level.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -35,8 +34,8 @@ impl LevelValue {
             Axis::PointsPerCell => case.points_per_cell.to_string(),
             Axis::WaterBulkModulus => format!("{:e}", case.material.water_bulk_modulus),
             Axis::TimeStep => match case.time_step {
-                TimeStepRule::Seconds(seconds) => format!("{seconds:e} s"),
-                rule => step_label(&rule),
+                TimeStep::Seconds(seconds) => format!("{seconds:e} s"),
+                rule => rule.to_string(),
             },
         })
     }

@@ -11,7 +11,7 @@ use crate::questions::study_results::StudyResults;
 use crate::record::provenance::{Origins, Provenance};
 use crate::study::check::Study;
 use oedometer_exact::ExactError;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::scene::Question;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -84,18 +84,16 @@ impl StudyQuestion {
     /// The question of a study, by its task and scene.
     fn new(study: &Study) -> Self {
         let is_stability = study.planned.iter().any(|planned| planned.case.task == Task::Stability);
-        match study.scene {
+        match study.scene.question {
             _ if study.is_race => Self::Race,
             _ if is_stability => Self::Stability,
-            SceneKind::Terzaghi | SceneKind::SingleMode | SceneKind::SealedElement => Self::SmallStrain,
-            SceneKind::XieLeo => Self::LargeStrain,
-            SceneKind::ManufacturedBox | SceneKind::ManufacturedShear | SceneKind::ManufacturedVortex => {
-                Self::MovingPoints
-            }
-            SceneKind::CosineLayer | SceneKind::Mandel | SceneKind::Footing => Self::Locking,
-            SceneKind::Layered | SceneKind::YieldFront => Self::Layers,
-            SceneKind::DynamicColumn | SceneKind::DynamicSingleMode | SceneKind::StandingWave => Self::Waves,
-            SceneKind::AtRest => Self::Rest,
+            Question::SmallStrain => Self::SmallStrain,
+            Question::LargeStrain => Self::LargeStrain,
+            Question::MovingPoints => Self::MovingPoints,
+            Question::Locking => Self::Locking,
+            Question::Layers => Self::Layers,
+            Question::Waves => Self::Waves,
+            Question::Rest => Self::Rest,
         }
     }
 }
@@ -120,7 +118,7 @@ impl StudyFindings {
             has_page: results.has_page,
             question: StudyQuestion::new(study),
             shows_verdict: !study.is_race || !check.judgements.is_empty() || !check.meets_all(),
-            shows_sweeps: study.scene.has_plane_fields() && !study.is_race,
+            shows_sweeps: study.scene.body.is_plane() && !study.is_race,
             is_stability_alone: records.iter().all(|record| record.stability.is_some()),
             plain: Findings::new(results, &answers)?,
             answers,

@@ -18,6 +18,7 @@ use crate::study::overrides::Asked;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::ReferenceKind;
+use oedometer_scenes::scene::Body;
 use oedometer_soil::wording::short;
 
 /// Why results have no score.
@@ -256,7 +257,7 @@ impl Scored {
         self.score.unresolved.retain(|one| is_judged(&one.quantity));
         self.score.warnings.splice(0..0, missing);
         self.score.warnings.extend(self.missing(parameters, held.mapping));
-        self.score.warnings.extend(held.mapping.taken_for_granted(held.case.scene.has_plane_fields()).map(|taken| Finding {
+        self.score.warnings.extend(held.mapping.taken_for_granted(held.case.scene.body.is_plane()).map(|taken| Finding {
             name: Lack::Undeclared,
             sentence: format!(
                 "the mapping does not declare {taken}: write what the file has into [units] and [sign], because nothing \
@@ -268,7 +269,7 @@ impl Scored {
             let of_scene = match held.mapping.whole_volume {
                 Some(volume) => vec![volume],
                 None if matches!(own, ReferenceKind::Shelf(_)) => Vec::new(),
-                None if held.case.scene.has_plane_fields() => vec![column.volume(held.case.cells)],
+                None if held.case.scene.body.is_plane() => vec![column.volume(held.case.cells)],
                 None => {
                     let widths = [Some(1.0), Some(column.extent()), self.run.width];
                     widths.into_iter().flatten().map(|width| column.height * width).collect()
@@ -328,10 +329,10 @@ impl Scored {
         // It was compared with nothing, or is left out on purpose.
         let is_known = self.run.without.contains(&Quantity::Settlement)
             || self.score.unresolved.iter().any(|one| one.quantity == Quantity::Settlement);
-        let is_plane = case.scene.has_plane_fields();
+        let is_plane = case.scene.body.is_plane();
         let is_curve = self.run.states.iter().all(|state| state.initial_height.is_empty());
         if displacement && !settlement && !is_known && !is_curve {
-            let why = if case.scene.has_plates() {
+            let why = if case.scene.body == Body::Slab {
                 "it is that of the plate, where no sample lies: give a curve by [settlement] in the mapping"
             } else if is_plane {
                 "no sample lies on the surface under the crest of the load"
@@ -367,7 +368,7 @@ mod tests {
     use crate::import::mapping::preset::CONVENTION;
     use crate::score::tests::state;
     use crate::study::file::StudySource;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::{COSINE_LAYER, MANDEL, Scene, TERZAGHI};
 
     #[test]
     fn a_result_is_named_by_its_files_and_by_their_ends_where_they_are_many() {
@@ -387,7 +388,7 @@ mod tests {
         use Quantity::{Displacement, Pressure, Settlement};
         let text = CONVENTION.to_owned();
         let mapping = Mapping::read(&StudySource { name: "map.toml".to_owned(), text }).expect("a mapping");
-        let case = Case::seed(Task::Solve, SceneKind::Terzaghi);
+        let case = Case::seed(Task::Solve, &TERZAGHI);
         let comparison = Comparison {
             case: &case,
             parameters: ColumnParameters::default(),
@@ -436,7 +437,7 @@ mod tests {
             absolute: 0.1,
         };
         let (moved, settled) = (row(Quantity::Displacement), row(Quantity::Settlement));
-        let notes = |scene: SceneKind, errors: &[ErrorRow], horizontal: &[f64]| {
+        let notes = |scene: &'static Scene, errors: &[ErrorRow], horizontal: &[f64]| {
             let states = vec![SampledState {
                 horizontal_displacement: horizontal.to_vec(),
                 initial_height: vec![0.5],
@@ -454,12 +455,12 @@ mod tests {
                      mapping";
         let vertical = "there is no u_x: the displacement is judged by its vertical component alone";
         let (both, alone) = ([moved.clone(), settled.clone()], [moved]);
-        assert_eq!(notes(SceneKind::Terzaghi, &alone, &[]), [surface]);
-        assert_eq!(notes(SceneKind::Mandel, &alone, &[]), [plate]);
-        assert_eq!(notes(SceneKind::CosineLayer, &alone, &[]), [crest, vertical]);
-        assert_eq!(notes(SceneKind::CosineLayer, &alone, &[0.1]), [crest]);
-        assert_eq!(notes(SceneKind::CosineLayer, &both, &[]), [vertical]);
-        assert_eq!(notes(SceneKind::Terzaghi, &both, &[]), [""; 0]);
-        assert_eq!(notes(SceneKind::CosineLayer, &[settled], &[]), [""; 0], "no displacement at all");
+        assert_eq!(notes(&TERZAGHI, &alone, &[]), [surface]);
+        assert_eq!(notes(&MANDEL, &alone, &[]), [plate]);
+        assert_eq!(notes(&COSINE_LAYER, &alone, &[]), [crest, vertical]);
+        assert_eq!(notes(&COSINE_LAYER, &alone, &[0.1]), [crest]);
+        assert_eq!(notes(&COSINE_LAYER, &both, &[]), [vertical]);
+        assert_eq!(notes(&TERZAGHI, &both, &[]), [""; 0]);
+        assert_eq!(notes(&COSINE_LAYER, &[settled], &[]), [""; 0], "no displacement at all");
     }
 }

@@ -260,7 +260,7 @@ mod tests {
     use super::*;
     use crate::case::Task;
     use oedometer_problem::method::Method;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::TERZAGHI;
 
     #[test]
     fn a_measure_is_told_by_what_it_is_held_against() {
@@ -288,7 +288,7 @@ mod tests {
     fn a_selection_fits_by_every_input_that_it_names_but_that_of_the_axis() {
         let key = |name: &str| Key::named(name, "sweep").expect("a key");
         let method = SolverName::Own(Method::named("MPM").expect("a method"));
-        let mut case = Case { cells: 8, ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
+        let mut case = Case { cells: 8, ..Case::seed(Task::Solve, &TERZAGHI) };
         key("method").set(&mut case, Value::Method(method));
         let cells = |cells: usize| (key("cells"), Value::Count(cells));
         let porosity = |porosity: f64| (key("porosity"), Value::Number(porosity));

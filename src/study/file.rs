@@ -9,7 +9,7 @@ use crate::study::solver::PRESETS;
 use oedometer_convergence::Class;
 use oedometer_exact::reference::ReferenceKind;
 pub use oedometer_foreign::source::StudySource;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::Scene;
 use oedometer_soil::layers::SoilLayer;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
@@ -26,7 +26,7 @@ pub struct StudyFile {
     #[serde(default)]
     pub summary: String,
     /// Physical problem.
-    pub scene: Placed<SceneKind>,
+    pub scene: Placed<&'static Scene>,
     /// Geometry and load of a column.
     #[serde(default)]
     #[schemars(transform = |schema: &mut Schema| add_inputs(schema, "column", false))]

@@ -6,7 +6,7 @@ use crate::study::diagnostic::StudyError;
 use crate::study::units::{has_unit, in_si};
 use crate::study::{Purpose, Study, StudySource};
 use oedometer_exact::{AddedKey, ColumnParameters, ReferenceKind, ShelfParameters, ShelfProblem};
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::Scene;
 use oedometer_scenes::column::column_parameters;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::law::Law;
@@ -382,7 +382,7 @@ impl Asked {
                 )));
             }
         }
-        let name = on_shelf.map_or(scene, |kind| SceneKind::of_solution(kind).name());
+        let name = on_shelf.map_or(scene, |kind| Scene::of_solution(kind).name);
         let mut lines = StudyLines::of("score", name, "`--scene`")?;
         lines.give_outputs(&outputs)?;
         let is_requested = lines.has("output.time_factors") || lines.has("output.times");
@@ -406,7 +406,7 @@ impl Asked {
         if is_on_shelf(kind) {
             set.refuse_ignored(kind, false)?;
         }
-        let mut lines = StudyLines::of("exact", SceneKind::of_solution(kind).name(), "the solution's name")?;
+        let mut lines = StudyLines::of("exact", Scene::of_solution(kind).name, "the solution's name")?;
         lines.assign(&set)?;
         let study = lines.theory_study()?;
         let case = &study.planned[0].case;
@@ -694,7 +694,7 @@ mod tests {
         let mut told = Vec::new();
         for kind in ReferenceKind::all() {
             let usual = given(kind, &[]).unwrap_or_else(|| panic!("{kind} by itself"));
-            let case = Case::seed(crate::case::Task::Solve, SceneKind::of_solution(kind));
+            let case = Case::seed(crate::case::Task::Solve, Scene::of_solution(kind));
             let added = AddedKey::ALL.iter().map(|added| {
                 let values = ["0.77", "0.91", "1e7", "0.2"].map(str::to_owned).to_vec();
                 (added.key.to_owned(), values)

@@ -115,7 +115,7 @@ fn an_error_leads_to_what_caused_it() {
     use crate::golden::text_error::{CellError, GoldenTextError};
     use std::error::Error;
 
-    let case = Case::seed(Task::Solve, oedometer_scenes::SceneKind::Terzaghi);
+    let case = Case::seed(Task::Solve, &oedometer_scenes::TERZAGHI);
     let refused = crate::campaign::runner::RunError::refused(&case, crate::exact::ExactError::Depth(2.0));
     let source = refused.source().and_then(|source| source.downcast_ref());
     assert_eq!(source, Some(&crate::exact::ExactError::Depth(2.0)));

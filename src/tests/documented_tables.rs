@@ -8,7 +8,7 @@ use crate::case::{Case, Task};
 use crate::cli::commands::schema::{Document, schema_of};
 use crate::record::csv::long_tables::columns_csv;
 use oedometer_problem::method::Method;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::{COSINE_LAYER, MANUFACTURED_BOX, SCENES, Scene, TERZAGHI};
 use oedometer_soil::wording::typed;
 use serde_json::Value as Json;
 use std::collections::BTreeSet;
@@ -62,9 +62,9 @@ fn code(word: &str) -> String {
 /// The inputs of a case that a table takes: meaning, values and what is taken where one is left out.
 fn inputs(table: &str) -> String {
     let scene = match table {
-        "layer" => SceneKind::CosineLayer,
-        "manufactured" => SceneKind::ManufacturedBox,
-        _ => SceneKind::Terzaghi,
+        "layer" => &COSINE_LAYER,
+        "manufactured" => &MANUFACTURED_BOX,
+        _ => &TERZAGHI,
     };
     let seed = Case::seed(Task::Solve, scene);
     // A sweep takes the keys of the other tables too, which have them on the same page.
@@ -166,12 +166,12 @@ fn methods() -> String {
 }
 
 fn scenes() -> String {
-    let row = |scene: SceneKind| {
-        let references = scene.references().iter().map(|kind| code(kind.name()));
+    let row = |scene: &'static Scene| {
+        let references = scene.reference_kinds().into_iter().map(|kind| code(kind.name()));
         let references = references.collect::<Vec<_>>().join(", ");
-        [code(scene.name()), format!("{}; {references}", scene.summary())]
+        [code(scene.name), format!("{}; {references}", scene.summary)]
     };
-    list(SceneKind::ALL.into_iter().map(row))
+    list(SCENES.into_iter().map(row))
 }
 
 fn columns(of: &str) -> String {

@@ -15,8 +15,7 @@ use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::method::{
     Basis, Configuration, Memory, PressureIntegration, Quadrature, Recovery, StrainGradient,
 };
-use oedometer_problem::time_step::TimeStepRule;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::NAMES;
 use oedometer_soil::material::Material;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -30,7 +29,7 @@ const SCENES: [&str; 4] = ["terzaghi", "xie-leo", "cosine-layer", "dynamic-colum
 /// Every option with its values, in the order of the table.
 fn options() -> Vec<(&'static str, Vec<&'static str>)> {
     vec![
-        ("scene", SceneKind::ALL.map(SceneKind::name).to_vec()),
+        ("scene", NAMES.to_vec()),
         ("dimensions", vec!["one", "two"]),
         ("task", Task::ALL.map(Task::name).to_vec()),
         ("base", Base::ALL.map(Base::name).to_vec()),
@@ -96,7 +95,7 @@ fn memory(memory: Memory) -> &'static str {
 fn choices_of(case: &Case) -> BTreeSet<Choice> {
     let (column, soil, method) = (&case.column, &case.material, case.method.built_in().expect("a method"));
     let mut choices: BTreeSet<Choice> = [
-        ("scene", case.scene.name()),
+        ("scene", case.scene.name),
         ("dimensions", if column.dimensions == 1 { "one" } else { "two" }),
         ("task", case.task.name()),
         ("basis", basis(method.basis)),
@@ -112,16 +111,7 @@ fn choices_of(case: &Case) -> BTreeSet<Choice> {
         ["law", "continuity", "conductivity_mean", "integrator", "formulation"]
             .map(|name| word_of(case, name)),
     );
-    choices.insert((
-        "step",
-        match case.time_step {
-            TimeStepRule::Stable(_) => "stable",
-            TimeStepRule::Courant(_) => "courant",
-            TimeStepRule::Seconds(_) => "seconds",
-            TimeStepRule::Growth(_) => "growth",
-            TimeStepRule::Tolerance(_) => "tolerance",
-        },
-    ));
+    choices.insert(("step", case.time_step.kind().word));
     let seed = Material::default().water_bulk_modulus;
     choices.insert((
         "water",

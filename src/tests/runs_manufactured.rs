@@ -26,7 +26,7 @@ fn run_by(integrator: &str, scene: &str, method: &str, cells: usize, factors: &s
 
 /// Errors of displacement and of pressure at the points, the latter over `P_0`, at a time factor.
 fn two(record: &Record, factor: f64) -> [f64; 2] {
-    let name = record.case.scene.name();
+    let name = record.case.scene.name;
     let row = |quantity| record.error(quantity, Sample::Points, Norm::L2, name, factor).expect("measured");
     [row(Quantity::Displacement).value, row(Quantity::Pressure).absolute]
 }

@@ -11,7 +11,7 @@ use crate::study::units::{has_unit, in_si, leading_number};
 use crate::tests::assert_snapshot;
 use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::method::Method;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::SCENES;
 use oedometer_soil::wording::short;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -29,7 +29,7 @@ fn told(name: &str, text: &str) -> String {
         study.name,
         study.title,
         study.summary,
-        study.scene.name(),
+        study.scene.name,
         study.references,
         study.case_seconds,
         study.timing_repeats,
@@ -561,9 +561,9 @@ fn complaint(text: &str) -> String {
 #[test]
 fn every_scene_takes_its_keys_and_says_why_it_refuses_others() {
     let mut text = String::new();
-    for scene in SceneKind::ALL {
-        writeln!(text, "## {}", scene.name()).expect("memory");
-        let head = format!("title = 't'\nscene = '{}'\noutput.time_factors = [0.0002]\n", scene.name());
+    for scene in SCENES {
+        writeln!(text, "## {}", scene.name).expect("memory");
+        let head = format!("title = 't'\nscene = '{}'\noutput.time_factors = [0.0002]\n", scene.name);
         let mut told: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for key in KEYS {
             for value in values(key.kind) {
@@ -606,7 +606,7 @@ fn every_shipped_study_is_read_as_it_was() {
         writeln!(
             text,
             "{own}: {} cases {smoke}/{ci}/{full}, {} series, {} single, left out {:?}, {warnings} warnings",
-            study.scene.name(),
+            study.scene.name,
             study.expectations.len(),
             study.case_expectations.len(),
             study.not_applicable
@@ -645,7 +645,7 @@ fn options_that_exclude_each_other_say_why() {
         .collect();
     let mut told: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for _ in 0..1500 {
-        let scene = SceneKind::ALL[place(SceneKind::ALL.len())].name();
+        let scene = SCENES[place(SCENES.len())].name;
         let method = match place(8) {
             0 => own.to_owned(),
             _ => format!("'{}'", methods[place(methods.len())]),

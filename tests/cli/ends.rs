@@ -1,7 +1,8 @@
 //! How commands end on small inputs: exit codes with whole sentences, and what `list` and `plan` print.
 
 use crate::program::{call, folder_with};
-use oedometer::{IntegratorKind, Method, SceneKind};
+use oedometer::scenes::SCENES;
+use oedometer::{IntegratorKind, Method};
 use oedometer_exact::{ReferenceKind, ShelfProblem};
 use std::fs;
 use tempfile::TempDir;
@@ -153,7 +154,7 @@ fn all_names_are_listed_under_their_headings() {
     assert_eq!(
         sections,
         [
-            ("scenes", SceneKind::ALL.map(|scene| (scene.name(), scene.summary())).to_vec()),
+            ("scenes", SCENES.map(|scene| (scene.name, scene.summary)).to_vec()),
             ("methods", names.iter().zip(&choices).map(|(name, parts)| (&**name, &**parts)).collect()),
             ("integrators", with_nothing(&IntegratorKind::NAMES)),
             (

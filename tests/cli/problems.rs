@@ -118,7 +118,7 @@ fn impossible_problems_are_refused_in_sentences() {
 
 #[test]
 fn every_scene_has_an_exact_solution_to_print() {
-    for scene in oedometer::SceneKind::ALL.map(oedometer::SceneKind::name) {
+    for scene in oedometer::scenes::NAMES {
         let told = exact(&[scene]);
         assert_eq!(told.code, 0, "{scene}: {}", told.err);
         assert!(told.out.lines().count() > 1, "{scene}: {}", told.out);
@@ -148,9 +148,7 @@ fn a_degree_is_empty_where_it_means_nothing() {
         "injection",
         "manufactured-box",
     ];
-    for scene in
-        oedometer::SceneKind::ALL.map(oedometer::SceneKind::name).into_iter().chain(["seabed", "injection"])
-    {
+    for scene in oedometer::scenes::NAMES.into_iter().chain(["seabed", "injection"]) {
         let told = exact(&[scene, "--format", "csv"]);
         let place = told
             .out

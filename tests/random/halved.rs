@@ -39,7 +39,7 @@ pub fn drawn(seed: u64, index: u64) -> Options {
 
 /// Largest error of the cells' pressures over the load, and of the settlement over the final one.
 fn largest_error(record: &Record) -> f64 {
-    let reference = record.case.scene.references().first().map_or("", |own| own.name());
+    let reference = record.case.scene.references.first().map_or("", |own| own.kind.name());
     let own = |name: &str| name == "large-strain" || name == reference;
     let rows = record.errors.iter().filter(|row| own(&row.reference));
     let judged = rows.filter(|row| match row.quantity {

@@ -2,7 +2,8 @@
 //! of another problem.
 
 use crate::solved::{End, Solved};
-use oedometer::{Basis, Case, Configuration, IntegratorKind, Norm, Quantity, Record, Sample, SceneKind};
+use oedometer::scenes::scene::{Body, Clock, LoadKind, Question};
+use oedometer::{Basis, Case, Configuration, IntegratorKind, Norm, Quantity, Record, Sample};
 
 /// Something that must hold and does not.
 #[derive(Clone, Debug)]
@@ -69,17 +70,17 @@ fn numbers_are_finite(record: &Record) -> Vec<Violation> {
 /// in every study of it.
 fn may_lock(record: &Record) -> bool {
     let case = &record.case;
-    (case.scene.is_a_layer() || is_footing(case))
+    case.scene.body == Body::Layer
         && case.method.built_in().is_some_and(|method| !method.pressure.is_by_cells())
 }
 
 fn is_footing(case: &Case) -> bool {
-    case.scene == SceneKind::Footing
+    case.scene.load == LoadKind::Pushed
 }
 
 /// Whether skeleton and water keep an inertia that the problem is about.
 fn has_waves(record: &Record) -> bool {
-    record.case.scene.has_waves() || record.groups.inertia > 1e-3
+    record.case.scene.waves || record.groups.inertia > 1e-3
 }
 
 /// Pressure over the load that consolidation or waves can reach.
@@ -88,7 +89,8 @@ fn has_waves(record: &Record) -> bool {
 /// overshoots a front by half. A slab's rises by a fifth; a layer's oscillates under a rough base. Under a plate it is up to
 /// 1 + π times the strength, and oscillates by several times of it.
 fn pressures_are_bounded(record: &Record) -> Vec<Violation> {
-    if may_lock(record) || record.case.scene.is_manufactured() || record.case.scene.is_at_rest() {
+    if may_lock(record) || record.case.scene.motion.is_some() || record.case.scene.question == Question::Rest
+    {
         return Vec::new();
     }
     let most = match () {
@@ -113,13 +115,13 @@ fn pressures_are_bounded(record: &Record) -> Vec<Violation> {
 /// Settlement over the final one of a column: from nothing to all of it, twice that in a wave.
 fn settlements_are_bounded(record: &Record) -> Vec<Violation> {
     let case = &record.case;
-    let is_column = !case.scene.is_a_layer() && !case.scene.is_manufactured() && !case.scene.has_plates();
+    let is_column = case.scene.body == Body::Column;
     if !is_column || !case.scene.is_loaded() {
         return Vec::new();
     }
     let strain = case.column.load / case.material.oedometric_modulus();
     // The softest that a preconsolidated soil and layers may be is the soil that they vary.
-    let is_varied = case.scene == SceneKind::YieldFront || !case.column.soils.is_empty();
+    let is_varied = case.scene.clock == Clock::HalfSpace || !case.column.soils.is_empty();
     let whole = case.column.height * if is_varied { strain } else { case.material.law.shrinkage(strain) };
     // Points that cross cells under hats make stresses jump by a quarter of the load.
     let is_hat = case.method.built_in().is_some_and(|method| method.basis == Basis::Hat);
@@ -146,17 +148,21 @@ fn settlements_are_bounded(record: &Record) -> Vec<Violation> {
 fn explained_error(record: &Record) -> Option<f64> {
     let case = &record.case;
     let points = &case.column.points;
-    if case.cells < 16 || may_lock(record) || case.scene.is_manufactured() || case.scene.is_at_rest() {
+    if case.cells < 16
+        || may_lock(record)
+        || case.scene.motion.is_some()
+        || case.scene.question == Question::Rest
+    {
         return None;
     }
     // What numerical viscosity does is FLIP's business: a share of one percent shows.
-    if case.settings.flip < 1.0 || (has_waves(record) && !case.scene.has_waves()) {
+    if case.settings.flip < 1.0 || (has_waves(record) && !case.scene.waves) {
         return None;
     }
     let method = case.method.built_in()?;
     let mut most = if method.recovery.name() == "patch" { 0.05 } else { 0.12 };
     // A front within its first way through the column; steps of first order; what runs longer has another phase.
-    if case.scene.has_waves() {
+    if case.scene.waves {
         let soil = &case.material;
         let density = (1.0 - soil.porosity) * soil.grain_density + soil.porosity * soil.water_density;
         let speed = ((soil.oedometric_modulus() + soil.water_bulk_modulus / soil.porosity) / density).sqrt();
@@ -207,7 +213,7 @@ fn errors_are_bounded(record: &Record) -> Vec<Violation> {
     };
     let rows = record.errors.iter().filter(|row| {
         row.reference == own.name
-            && (row.time_factor >= first || record.case.scene.has_waves())
+            && (row.time_factor >= first || record.case.scene.waves)
             && judged(row.quantity, row.sample, row.norm)
     });
     rows.filter(|row| row.absolute.is_nan() || row.absolute.abs() > most)

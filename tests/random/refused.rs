@@ -25,7 +25,7 @@ const MOST: f64 = 0.4;
 fn refused_products_of_choices_are_few() {
     let (mut asked, mut refused, mut reasons) = (0, 0, BTreeMap::<String, usize>::new());
     let mut number = 0;
-    for scene in oedometer::SceneKind::ALL {
+    for scene in oedometer::scenes::SCENES {
         for method in Method::names() {
             for (integrator, step) in [
                 ("explicit", ("courant", 0.4)),
@@ -39,14 +39,13 @@ fn refused_products_of_choices_are_few() {
                             continue;
                         }
                         let mut options = Options {
-                            scene: scene.name(),
+                            scene: scene.name,
                             method: method.clone(),
                             integrator,
                             cells: 10,
                             points_per_cell: 2,
                             time_step: Some(step),
-                            time_factors: scene
-                                .default_time_factors(&Column::default(), &Material::default())[..1]
+                            time_factors: (scene.outputs)(&Column::default(), &Material::default())[..1]
                                 .to_vec(),
                             settings: Vec::new(),
                         };

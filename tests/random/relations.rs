@@ -6,6 +6,7 @@ use crate::numbers::Numbers;
 use crate::options::{Options, rounded};
 use crate::solved::{End, Solved};
 use oedometer::{Kernel, Record};
+use oedometer_scenes::scene::Question;
 
 /// What is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -345,7 +346,7 @@ fn largest_difference(a: &Record, b: &Record) -> (f64, String) {
 fn load_of(record: &Record) -> f64 {
     let case = &record.case;
     let weight = case.material.grain_density * case.material.gravity * case.column.height;
-    let has_weight = case.column.self_weight || case.scene.is_at_rest();
+    let has_weight = case.column.self_weight || case.scene.question == Question::Rest;
     if has_weight { case.column.load.max(weight) } else { case.column.load }
 }
 

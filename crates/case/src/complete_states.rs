@@ -89,15 +89,14 @@ fn lack_of_samples(samples: &Samples) -> Option<String> {
 mod tests {
     use super::*;
     use crate::{Sample, Task};
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::TERZAGHI;
 
     /// What is wrong with states.
     type Change<'a> = &'a dyn Fn(&mut Vec<Snapshot>);
 
     #[test]
     fn incomplete_states_fail_and_name_what_is_missing() {
-        let case =
-            Case { cells: 2, time_factors: vec![0.1].into(), ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
+        let case = Case { cells: 2, time_factors: vec![0.1].into(), ..Case::seed(Task::Solve, &TERZAGHI) };
         let mut complete = Snapshot { time: 0.1 * case.seconds_per_time_factor(), ..Snapshot::default() };
         complete.settlement = f64::NAN;
         complete.points.initial_height = vec![0.25, 0.75];

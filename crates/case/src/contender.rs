@@ -87,7 +87,7 @@ impl Contender {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::{TERZAGHI, XIE_LEO};
 
     #[test]
     fn every_contender_has_a_method_and_a_name_of_its_own_and_races_as_itself_in_every_scene() {
@@ -100,7 +100,7 @@ mod tests {
             );
             assert_eq!(contender.method().to_string(), contender.name);
             assert_eq!(contender.is_total(), contender.name.starts_with("TL-"), "{}", contender.name);
-            for scene in [SceneKind::Terzaghi, SceneKind::XieLeo] {
+            for scene in [&TERZAGHI, &XIE_LEO] {
                 let mut case = Case::seed(crate::Task::Solve, scene);
                 case.method = Method::named(contender.name).expect("a method").into();
                 let running: Vec<&str> =

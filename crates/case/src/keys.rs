@@ -3,12 +3,12 @@
 //! What a key means, its unit, its range and its place in a case stand here once. Parsing, checks, sweeps,
 //! selections of expectations, the JSON Schema and the columns of tables follow from it.
 
-use crate::{Case, SolverName, step_label};
+use crate::{Case, SolverName};
 use oedometer_exact::parameters::Base;
 use oedometer_problem::integrator::{Formulation, IntegratorKind};
 use oedometer_problem::settings::Drag;
 use oedometer_problem::settings::Scheme;
-use oedometer_problem::time_step::TimeStepRule;
+use oedometer_problem::time_step::TimeStep;
 use oedometer_scenes::column::{Shape, Undrained};
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::continuity::Continuity;
@@ -72,7 +72,7 @@ pub enum Value {
     /// What solves the case.
     Method(SolverName),
     /// A rule of the time step.
-    TimeStep(TimeStepRule),
+    TimeStep(TimeStep),
     /// A word among its choices.
     Word(&'static str),
     /// True or false.
@@ -104,7 +104,7 @@ macro_rules! fields {
     )+ };
 }
 
-fields!(SolverName: Method, TimeStepRule: TimeStep, bool: Flag, usize: Count, f64: Number);
+fields!(SolverName: Method, TimeStep: TimeStep, bool: Flag, usize: Count, f64: Number);
 
 macro_rules! word_fields {
     ($($kind:ty),+) => { $(
@@ -301,7 +301,7 @@ impl Key {
 
     /// Whether it says something of a case: what only this program's integrators take says nothing to others.
     pub fn counts_for(&self, case: &Case) -> bool {
-        let is_rule = self.name == "time_step" && !matches!(case.time_step, TimeStepRule::Seconds(_));
+        let is_rule = self.name == "time_step" && !matches!(case.time_step, TimeStep::Seconds(_));
         case.has_integrator() || !(is_rule || self.is_of_integrator())
     }
 
@@ -339,7 +339,7 @@ impl fmt::Display for Value {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Method(method) => method.fmt(out),
-            Self::TimeStep(rule) => out.write_str(&step_label(rule)),
+            Self::TimeStep(time_step) => time_step.fmt(out),
             Self::Word(word) => out.write_str(word),
             Self::Flag(flag) => flag.fmt(out),
             Self::Count(count) => count.fmt(out),
@@ -354,13 +354,13 @@ mod tests {
     use super::*;
     use crate::Task;
     use oedometer_problem::method::Method;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::{COSINE_LAYER, MANUFACTURED_BOX, TERZAGHI};
 
     /// A value that the seed does not have.
     fn another(key: &Key, seed: &Case) -> Value {
         let others = match key.kind {
             Kind::Method => vec![Value::Method(Method::named("GIMP").expect("a method").into())],
-            Kind::TimeStep => vec![Value::TimeStep(TimeStepRule::Seconds(0.1))],
+            Kind::TimeStep => vec![Value::TimeStep(TimeStep::Seconds(0.1))],
             Kind::Word(words) => words.iter().copied().map(Value::Word).collect(),
             Kind::Flag => [true, false].map(Value::Flag).to_vec(),
             Kind::Count(_) => [1, 2].map(Value::Count).to_vec(),
@@ -373,9 +373,9 @@ mod tests {
     fn every_key_has_a_place_of_its_own_in_a_case_and_in_its_identity() {
         for key in KEYS {
             let scene = match key.tables.last() {
-                Some(&"manufactured") => SceneKind::ManufacturedBox,
-                Some(&"layer") => SceneKind::CosineLayer,
-                _ => SceneKind::Terzaghi,
+                Some(&"manufactured") => &MANUFACTURED_BOX,
+                Some(&"layer") => &COSINE_LAYER,
+                _ => &TERZAGHI,
             };
             let seed = Case::seed(Task::Solve, scene);
             let mut case = seed.clone();
@@ -408,8 +408,7 @@ mod tests {
     #[test]
     fn values_read_as_tables_have_them_and_keys_with_their_units() {
         let ogs = crate::Attached::new("ogs", "0123456789abcdef").map(SolverName::Attached).expect("plain");
-        let values =
-            [Value::Method(ogs), Value::TimeStep(TimeStepRule::Tolerance(0.5)), Value::Word("explicit")];
+        let values = [Value::Method(ogs), Value::TimeStep(TimeStep::Tolerance(0.5)), Value::Word("explicit")];
         assert_eq!(values.map(|value| value.to_string()), ["ogs", "tolerance=5e-1", "explicit"]);
         let values = [Value::Flag(true), Value::Count(3), Value::Number(0.25), Value::Absent];
         assert_eq!(values.map(|value| value.to_string()), ["true", "3", "0.25", ""]);
@@ -438,7 +437,7 @@ mod tests {
 
     #[test]
     fn setting_an_input_sets_its_dependents_and_counts_for_solvers_that_read_it() {
-        let mut case = Case::seed(Task::Solve, SceneKind::Terzaghi);
+        let mut case = Case::seed(Task::Solve, &TERZAGHI);
         let set = |case: &mut Case, name: &str, value: Value| {
             Key::named(name, "sweep").expect("a key").set(case, value);
         };
@@ -460,7 +459,7 @@ mod tests {
         let idle_options =
             ["drag", "flip", "mapping_back", "affine", "stress_slopes", "formulation", "scheme"];
         assert_eq!(idle(&case), [&["integrator", "time_step"], &idle_options[..]].concat());
-        case.time_step = TimeStepRule::Seconds(1.0);
+        case.time_step = TimeStep::Seconds(1.0);
         assert_eq!(idle(&case), [&["integrator"], &idle_options[..]].concat());
     }
 }

@@ -1,8 +1,9 @@
 //! Labels of cases: the method, the meshes and what differs from the defaults.
 
-use crate::{Case, Key, Task, USUAL_POINTS, Value, step_label};
+use crate::{Case, Key, Task, USUAL_POINTS, Value};
 use oedometer_problem::arrangement::Arrangement;
-use oedometer_problem::time_step::TimeStepRule;
+use oedometer_problem::time_step::TimeStep;
+use oedometer_scenes::scene::Body;
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::material::Material;
@@ -12,7 +13,7 @@ impl Case {
     /// What is special about integration and equations: empty for the paper's integration of the
     /// scene's own equations.
     pub fn variant(&self) -> String {
-        let (settings, usual) = (&self.settings, self.scene.default_settings());
+        let (settings, usual) = (&self.settings, (self.scene.settings)());
         let named = [
             (self.formulation != self.integrator.default_formulation(), self.formulation.name().to_owned()),
             (settings.scheme != usual.scheme, settings.scheme.name().to_owned()),
@@ -21,9 +22,9 @@ impl Case {
             (settings.mapping_back != usual.mapping_back, "no mapping back".to_owned()),
             (settings.affine, "APIC".to_owned()),
             (settings.stress_slopes, "stress slopes".to_owned()),
-            (self.column.dimensions == 2 && !self.scene.needs_two_dimensions(), "two dimensions".to_owned()),
-            (self.column.self_weight && !self.scene.is_at_rest(), "own weight".to_owned()),
-            (self.material.law != self.scene.default_law(), format!("{} law", self.material.law.name())),
+            (self.column.dimensions == 2 && self.scene.body == Body::Column, "two dimensions".to_owned()),
+            (self.column.self_weight && !(self.scene.column)().self_weight, "own weight".to_owned()),
+            (self.material.law != (self.scene.soil)().law, format!("{} law", self.material.law.name())),
             (self.material.continuity != Continuity::Conservative, "porosity gradient dropped".to_owned()),
             (self.material.conductivity_mean == ConductivityMean::Chord, "chord mean".to_owned()),
         ];
@@ -31,11 +32,11 @@ impl Case {
             named.into_iter().filter(|(is_special, _)| *is_special).map(|(_, name)| name).collect();
         parts.extend(self.arrangement());
         let seed = Material::default();
-        if self.scene.shows_locking() && self.material.water_bulk_modulus != seed.water_bulk_modulus {
+        if self.scene.locks && self.material.water_bulk_modulus != seed.water_bulk_modulus {
             parts
                 .push(format!("K_w/E {:e}", self.material.water_bulk_modulus / self.material.youngs_modulus));
         }
-        if self.scene.shows_locking() && self.material.poissons_ratio != seed.poissons_ratio {
+        if self.scene.locks && self.material.poissons_ratio != seed.poissons_ratio {
             parts.push(format!("ν {}", self.material.poissons_ratio));
         }
         if self.task == Task::Stability {
@@ -98,7 +99,7 @@ impl Case {
 
     /// Words by which a person knows the case within its study.
     pub fn label(&self) -> String {
-        self.label_with(&step_label(&self.time_step))
+        self.label_with(&self.time_step.to_string())
     }
 
     /// The label without the step, for a case whose step is the question.
@@ -111,7 +112,7 @@ impl Case {
         let mut label = if self.has_integrator() {
             format!("{method} {} cells={cells} points={points_per_cell} {step}", self.integrator.name())
         } else {
-            let is_step_given = matches!(self.time_step, TimeStepRule::Seconds(_));
+            let is_step_given = matches!(self.time_step, TimeStep::Seconds(_));
             let points = match *points_per_cell {
                 USUAL_POINTS => String::new(),
                 points => format!(" points={points}"),
@@ -132,7 +133,7 @@ mod tests {
     use super::*;
     use crate::{Attached, SolverName};
     use oedometer_problem::settings::Drag;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::TERZAGHI;
 
     #[test]
     fn a_label_names_unusual_inputs_and_the_step_unless_the_step_is_the_question() {
@@ -157,8 +158,8 @@ mod tests {
             (|case| case.settings.drag = Drag::Implicit, "implicit drag"),
             (swept, "FLIP 0.25, drag=explicit, porosity=0.3, cells=8"),
         ] {
-            let mut case = Case { cells: 8, ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
-            case.time_step = TimeStepRule::Courant(0.4);
+            let mut case = Case { cells: 8, ..Case::seed(Task::Solve, &TERZAGHI) };
+            case.time_step = TimeStep::Courant(0.4);
             change(&mut case);
             let rest = if variant.is_empty() { String::new() } else { format!(" ({variant})") };
             let label = format!("{} explicit cells=8 points=2", case.method);
@@ -166,9 +167,9 @@ mod tests {
             assert_eq!(case.label_without_step(), label + &rest);
         }
         let ogs = Attached::new("ogs", "0123456789abcdef").map(SolverName::Attached).expect("a plain name");
-        let mut case = Case { method: ogs, cells: 8, ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
+        let mut case = Case { method: ogs, cells: 8, ..Case::seed(Task::Solve, &TERZAGHI) };
         assert_eq!(case.label(), "ogs cells=8");
-        (case.points_per_cell, case.time_step) = (1, TimeStepRule::Seconds(0.25));
+        (case.points_per_cell, case.time_step) = (1, TimeStep::Seconds(0.25));
         case.column.dimensions = 2;
         assert_eq!(case.label(), "ogs cells=8 points=1 seconds=2.5e-1 (two dimensions)");
         assert_eq!(case.label_without_step(), "ogs cells=8 points=1 (two dimensions)");

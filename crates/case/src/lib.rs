@@ -19,8 +19,9 @@ pub use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::method::{Configuration, Memory, Method};
 pub use oedometer_problem::quantity::{self, Norm, Quantity, Sample};
 use oedometer_problem::settings::ExplicitSettings;
-use oedometer_problem::time_step::TimeStepRule;
-use oedometer_scenes::SceneKind;
+use oedometer_problem::time_step::{StepScales, TimeStep};
+use oedometer_problem::wave_speeds;
+use oedometer_scenes::Scene;
 use oedometer_scenes::column::{Column, column_parameters};
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::elementary;
@@ -70,7 +71,7 @@ pub struct Case {
     #[serde(default, skip_serializing_if = "Task::is_solve")]
     pub task: Task,
     /// Physical problem.
-    pub scene: SceneKind,
+    pub scene: &'static Scene,
     /// Geometry and load.
     #[schemars(with = "Column")]
     pub column: Shared<Column>,
@@ -90,7 +91,7 @@ pub struct Case {
     /// Points a cell and direction.
     pub points_per_cell: usize,
     /// Step size.
-    pub time_step: TimeStepRule,
+    pub time_step: TimeStep,
     /// Time factors of the outputs, ascending.
     #[schemars(with = "Vec<f64>")]
     pub time_factors: Shared<Vec<f64>>,
@@ -102,17 +103,17 @@ pub struct Case {
 
 impl Case {
     /// The seed values of a scene on one cell, by the plain method: what a study does not name.
-    pub fn seed(task: Task, scene: SceneKind) -> Self {
-        let integrator = scene.default_integrator();
+    pub fn seed(task: Task, scene: &'static Scene) -> Self {
+        let integrator = scene.integrators.list[0];
         Self {
             task,
             scene,
-            column: scene.default_column().into(),
-            material: scene.default_material().into(),
+            column: (scene.column)().into(),
+            material: (scene.soil)().into(),
             method: SolverName::Own(Method::STANDARD),
             integrator,
             formulation: integrator.default_formulation(),
-            settings: scene.default_settings(),
+            settings: (scene.settings)(),
             cells: 1,
             points_per_cell: USUAL_POINTS,
             time_step: integrator.default_rule(),
@@ -219,7 +220,7 @@ impl Case {
             self.integrator = IntegratorKind::Implicit;
             self.formulation = self.integrator.default_formulation();
             self.settings = ExplicitSettings::default();
-            if !matches!(self.time_step, TimeStepRule::Seconds(_)) {
+            if !matches!(self.time_step, TimeStep::Seconds(_)) {
                 self.time_step = self.integrator.default_rule();
             }
         }
@@ -238,7 +239,7 @@ impl Case {
 
     /// Whether water and skeleton are as compressible as the seed's: not a step towards incompressibility.
     pub fn has_usual_compressibility(&self) -> bool {
-        let seed = self.scene.default_material();
+        let seed = (self.scene.soil)();
         self.material.water_bulk_modulus == seed.water_bulk_modulus
             && self.material.poissons_ratio == seed.poissons_ratio
     }
@@ -249,6 +250,18 @@ impl Case {
             return vec![(self.column.height, *self.material)];
         }
         self.column.soils.iter().map(|layer| (layer.thickness, layer.soil(&self.material))).collect()
+    }
+
+    /// What its rule measures steps by, with a critical step in s.
+    pub fn step_scales(&self, critical: f64) -> StepScales {
+        let soils = self.soils();
+        let most = |of: fn(&Material) -> f64| soils.iter().map(|(_, soil)| of(soil)).fold(0.0, f64::max);
+        StepScales {
+            critical,
+            cell_size: self.cell_size(),
+            wave_speed: most(|soil| wave_speeds::fastest_wave_speed(soil, soil.porosity)),
+            consolidation: most(Material::coefficient_of_consolidation),
+        }
     }
 
     /// Cell size, m.
@@ -316,17 +329,6 @@ fn canonical_hash(case: &Case) -> blake3::Hash {
     })
 }
 
-/// A step rule as the command line takes it.
-pub fn step_label(rule: &TimeStepRule) -> String {
-    match rule {
-        TimeStepRule::Stable(share) => format!("stable={share}"),
-        TimeStepRule::Courant(share) => format!("courant={share}"),
-        TimeStepRule::Seconds(seconds) => format!("seconds={seconds:e}"),
-        TimeStepRule::Growth(growth) => format!("growth={growth}"),
-        TimeStepRule::Tolerance(tolerance) => format!("tolerance={tolerance:e}"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -335,6 +337,7 @@ mod tests {
     use oedometer_problem::settings::Drag;
     use oedometer_problem::settings::Scheme;
     use oedometer_scenes::column::Shape;
+    use oedometer_scenes::{TERZAGHI, XIE_LEO};
     use oedometer_soil::conductivity::ConductivityMean;
     use oedometer_soil::continuity::Continuity;
     use oedometer_soil::law::Law;
@@ -343,9 +346,9 @@ mod tests {
         Case {
             method: Method::named("GC-SRI-patch").expect("the paper's method").into(),
             cells: 10,
-            time_step: TimeStepRule::Stable(0.5),
+            time_step: TimeStep::Stable(0.5),
             time_factors: vec![0.1].into(),
-            ..Case::seed(Task::Solve, SceneKind::Terzaghi)
+            ..Case::seed(Task::Solve, &TERZAGHI)
         }
     }
 
@@ -359,11 +362,11 @@ mod tests {
         let explicit = foreign.clone().as_its_solver_knows();
         let mut implicit = foreign.clone();
         implicit.integrator = IntegratorKind::Implicit;
-        implicit.time_step = TimeStepRule::Growth(0.05);
+        implicit.time_step = TimeStep::Growth(0.05);
         implicit.settings.drag = Drag::Implicit;
         assert_eq!(implicit.as_its_solver_knows().hash(), explicit.hash());
         assert_eq!(explicit.label(), "ogs cells=10");
-        let stepped = Case { time_step: TimeStepRule::Seconds(0.5), ..foreign }.as_its_solver_knows();
+        let stepped = Case { time_step: TimeStep::Seconds(0.5), ..foreign }.as_its_solver_knows();
         assert_ne!(stepped.hash(), explicit.hash());
         assert_eq!(stepped.label(), "ogs cells=10 seconds=5e-1");
         assert_eq!(seed().as_its_solver_knows(), seed(), "a method of this program keeps all");
@@ -402,7 +405,7 @@ mod tests {
         let mut hashes = vec![seed().hash()];
         let changes: [fn(&mut Case); 50] = [
             |case| case.task = Task::Stability,
-            |case| case.scene = SceneKind::XieLeo,
+            |case| case.scene = &XIE_LEO,
             |case| case.column.height = 2.0,
             |case| *case.column = case.column.with_extent(2.0),
             |case| case.column.load = 2.0,
@@ -445,10 +448,10 @@ mod tests {
             |case| case.settings.stress_slopes = true,
             |case| case.cells = 11,
             |case| case.points_per_cell = 3,
-            |case| case.time_step = TimeStepRule::Stable(0.6),
-            |case| case.time_step = TimeStepRule::Courant(0.5),
-            |case| case.time_step = TimeStepRule::Seconds(0.5),
-            |case| case.time_step = TimeStepRule::Growth(0.5),
+            |case| case.time_step = TimeStep::Stable(0.6),
+            |case| case.time_step = TimeStep::Courant(0.5),
+            |case| case.time_step = TimeStep::Seconds(0.5),
+            |case| case.time_step = TimeStep::Growth(0.5),
             |case| case.time_factors = vec![0.2].into(),
             |case| case.time_factors = vec![0.1, 0.2].into(),
         ];

@@ -134,13 +134,13 @@ words!(Tier: Smoke "smoke", Ci "ci", Full "full");
 mod tests {
     use super::*;
     use crate::Task;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::TERZAGHI;
     use oedometer_soil::material::Material;
 
     #[test]
     fn cases_are_planned_once_and_share_what_they_have_in_common() {
         let case = |cells, porosity| {
-            let mut case = Case { cells, ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
+            let mut case = Case { cells, ..Case::seed(Task::Solve, &TERZAGHI) };
             (case.material.porosity, case.column.load) = (porosity, 2.0);
             case.time_factors = vec![0.1].into();
             case

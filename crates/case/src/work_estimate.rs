@@ -7,7 +7,7 @@ use crate::{Case, Task};
 use oedometer_problem::critical_step::OBSERVED_STEPS;
 use oedometer_problem::integrator::{Formulation, IntegratorKind};
 use oedometer_problem::method::{Configuration, Memory, Method, StrainGradient};
-use oedometer_problem::time_step::TimeStepRule;
+use oedometer_problem::time_step::TimeStep;
 use oedometer_problem::wave_speeds;
 use oedometer_scenes::column::column_parameters;
 use oedometer_soil::elementary;
@@ -59,24 +59,20 @@ pub fn estimated_steps(case: &Case) -> f64 {
     let least_of_soils = |limit: &dyn Fn(&Material) -> f64| {
         case.soils().iter().map(|(_, soil)| limit(soil)).fold(f64::INFINITY, f64::min)
     };
+    let critical = if case.integrator == IntegratorKind::SemiImplicit {
+        let are_undamped = case.has_undamped_motions();
+        least_of_soils(&|soil| wave_speeds::semi_implicit_limit(soil, cell_size, are_undamped))
+    } else {
+        1.5 * least_of_soils(&|soil| wave_speeds::combined_limit(soil, cell_size, case.settings.drag))
+    };
     let step = match case.time_step {
-        TimeStepRule::Stable(share) if case.integrator == IntegratorKind::SemiImplicit => {
-            let are_undamped = case.has_undamped_motions();
-            share * least_of_soils(&|soil| wave_speeds::semi_implicit_limit(soil, cell_size, are_undamped))
-        }
-        TimeStepRule::Stable(share) => {
-            1.5 * share
-                * least_of_soils(&|soil| wave_speeds::combined_limit(soil, cell_size, case.settings.drag))
-        }
-        TimeStepRule::Courant(share) => {
-            share * least_of_soils(&|soil| cell_size / wave_speeds::fastest_wave_speed(soil, soil.porosity))
-        }
-        TimeStepRule::Seconds(seconds) => seconds,
-        TimeStepRule::Tolerance(tolerance) => end * tolerance.sqrt() / 20.0,
-        TimeStepRule::Growth(growth) => {
+        // The mean of steps that vary.
+        TimeStep::Tolerance(tolerance) => end * tolerance.sqrt() / 20.0,
+        TimeStep::Growth(growth) => {
             let first = parameters.time(elementary::powi(case.cells as f64, -2));
             growth * end / (2.0 + elementary::ln((end / first).max(1.0)))
         }
+        rule => rule.first(&case.step_scales(critical)),
     };
     match case.task {
         // The undrained start alone: no steps, and rules relative to the time give none.
@@ -184,7 +180,7 @@ pub fn seconds_per_step(case: &Case) -> f64 {
     if follows && method.memory == Memory::Cells {
         factor *= MEMORY_FACTOR;
     }
-    if case.scene.is_manufactured() {
+    if case.scene.motion.is_some() {
         factor *= FORCED_FACTOR;
     }
     if kind == StepKind::Linear && case.soils().iter().any(|(_, soil)| soil.law.has_history()) {
@@ -198,10 +194,10 @@ mod tests {
     use super::*;
     use crate::Task;
     use oedometer_problem::method::Method;
-    use oedometer_scenes::SceneKind;
     use oedometer_scenes::column::Column;
+    use oedometer_scenes::{COSINE_LAYER, Scene, TERZAGHI, XIE_LEO};
 
-    fn case(scene: SceneKind, method: &str, integrator: IntegratorKind, cells: usize) -> Case {
+    fn case(scene: &'static Scene, method: &str, integrator: IntegratorKind, cells: usize) -> Case {
         let method = Method::named(method).expect("a method").into();
         let formulation = integrator.default_formulation();
         Case { method, integrator, formulation, cells, ..Case::seed(Task::Solve, scene) }
@@ -211,28 +207,26 @@ mod tests {
     fn the_kind_of_step_follows_the_motion_and_the_integrator() {
         use IntegratorKind::{Explicit, Implicit, SemiImplicit};
         let kind = |scene, method, integrator| StepKind::for_case(&case(scene, method, integrator, 10));
-        assert_eq!(kind(SceneKind::Terzaghi, "MPM", Explicit), StepKind::Assembled);
-        assert_eq!(kind(SceneKind::XieLeo, "MPM", Explicit), StepKind::PointWise);
-        assert_eq!(kind(SceneKind::Terzaghi, "MPM", Implicit), StepKind::Linear);
-        assert_eq!(kind(SceneKind::XieLeo, "MPM", Implicit), StepKind::Newton);
-        assert_eq!(kind(SceneKind::Terzaghi, "MPM", SemiImplicit), StepKind::Inertial);
+        assert_eq!(kind(&TERZAGHI, "MPM", Explicit), StepKind::Assembled);
+        assert_eq!(kind(&XIE_LEO, "MPM", Explicit), StepKind::PointWise);
+        assert_eq!(kind(&TERZAGHI, "MPM", Implicit), StepKind::Linear);
+        assert_eq!(kind(&XIE_LEO, "MPM", Implicit), StepKind::Newton);
+        assert_eq!(kind(&TERZAGHI, "MPM", SemiImplicit), StepKind::Inertial);
     }
 
     #[test]
     fn a_step_costs_more_with_points_width_and_fits() {
-        let column = |method, cells| {
-            seconds_per_step(&case(SceneKind::XieLeo, method, IntegratorKind::Explicit, cells))
-        };
+        let column =
+            |method, cells| seconds_per_step(&case(&XIE_LEO, method, IntegratorKind::Explicit, cells));
         assert!(column("MPM", 1000) > 5.0 * column("MPM", 100));
         assert!((column("GIMP-SRI-patch", 10) / column("MPM", 10) - FIT_FACTOR).abs() < 1e-12);
         assert!((column("PPP", 10) / column("VP", 10) - PROJECTION_FACTOR).abs() < 1e-12);
-        let layer =
-            |cells| seconds_per_step(&case(SceneKind::CosineLayer, "MPM", IntegratorKind::Implicit, cells));
+        let layer = |cells| seconds_per_step(&case(&COSINE_LAYER, "MPM", IntegratorKind::Implicit, cells));
         // Four times the points and twice the width.
         assert!(layer(80) > 6.0 * layer(40), "{} for {}", layer(80), layer(40));
         // A layer that lies costs what it does when it stands: a front is as wide as the shorter side.
         let layer_seconds = |height: f64, extent: f64, cells| {
-            let mut case = case(SceneKind::CosineLayer, "MPM", IntegratorKind::Implicit, cells);
+            let mut case = case(&COSINE_LAYER, "MPM", IntegratorKind::Implicit, cells);
             let column = Column { height, ..*case.column }.with_extent(extent);
             *case.column = column;
             seconds_per_step(&case)

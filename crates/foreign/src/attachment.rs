@@ -16,6 +16,7 @@ use oedometer_case::{Case, Sample};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_problem::outcome::{Failure, StepSizes};
 use oedometer_problem::snapshot::{PlaneSamples, Samples, Snapshot};
+use oedometer_scenes::scene::Body;
 use oedometer_soil::wording::{count_of, short};
 use regex_lite::Regex;
 use std::path::PathBuf;
@@ -376,7 +377,7 @@ fn snapshot_of(case: &Case, sample: Sample, state: &SampledState) -> Snapshot {
         if snapshot.settlement.is_nan() {
             snapshot.settlement = settlement_in(case, set).unwrap_or(f64::NAN);
         }
-        let plane = case.scene.has_plane_fields().then(|| PlaneSamples {
+        let plane = case.scene.body.is_plane().then(|| PlaneSamples {
             initial_distance: set.initial_distance.clone(),
             displacement_distance: None,
             horizontal_displacement: set.horizontal_displacement.clone(),
@@ -408,14 +409,15 @@ fn settlement_in(case: &Case, state: &SampledState) -> Option<f64> {
             && state
                 .initial_distance
                 .get(*place)
-                .is_none_or(|distance| !case.scene.has_plane_fields() || *distance < RIM * column.extent())
+                .is_none_or(|distance| !case.scene.body.is_plane() || *distance < RIM * column.extent())
     };
     let at_surface = || {
         let place = (0..state.initial_height.len()).find(is_at_surface)?;
         state.displacement.get(place).copied()
     };
     // The settlement of a slab is its plate's, which presses across.
-    let surface = state.surface_displacement.or_else(|| at_surface().filter(|_| !case.scene.has_plates()));
+    let surface =
+        state.surface_displacement.or_else(|| at_surface().filter(|_| case.scene.body != Body::Slab));
     surface.map(|up| -up)
 }
 

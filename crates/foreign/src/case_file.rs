@@ -1,8 +1,8 @@
 //! Writes `case.json`, which describes the problem to an attached solver.
 
 use oedometer_case::{Case, Key};
-use oedometer_problem::time_step::TimeStepRule;
-use oedometer_scenes::SceneKind;
+use oedometer_problem::time_step::TimeStep;
+use oedometer_scenes::Scene;
 use oedometer_scenes::column::column_parameters;
 use oedometer_soil::elementary::powi;
 use oedometer_soil::layers::SoilLayer;
@@ -30,7 +30,7 @@ pub struct CaseFile {
     /// Name of the attached solver; of a case of this program its method.
     pub solver: String,
     /// Physical problem.
-    pub scene: SceneKind,
+    pub scene: &'static Scene,
     /// The problem in a sentence.
     pub problem: String,
     /// Where `y` and `x` of a result count from, and what happens at the sides.
@@ -111,8 +111,8 @@ impl CaseFile {
             label: case.label(),
             solver: case.method.to_string(),
             scene: case.scene,
-            problem: case.scene.summary().to_owned(),
-            axes: axes_of(case).to_owned(),
+            problem: case.scene.summary.to_owned(),
+            axes: case.scene.axes.to_owned(),
             column: CaseColumn {
                 height: column.height,
                 width: column.extent(),
@@ -151,25 +151,9 @@ impl CaseFile {
     }
 }
 
-/// What a solver has to know of the sides of a body, and whoever writes its result of the axes.
-fn axes_of(case: &Case) -> &'static str {
-    if case.scene.has_plates() {
-        "x is measured from the middle of the slab, without flow or motion along x, to its drained, free \
-         side, at `height`; y from the middle between the plates to the plate, at `width`, which is rigid, \
-         smooth and impermeable and applies the mean stress `load`; cells are counted along x; the settlement is the plate's"
-    } else if case.scene.is_a_layer() {
-        "y is measured upward from the base, impermeable, fixed along y and if rough along x, to the drained \
-         surface; x from the crest of the load, load · cos(π x/width), to its trough; at both ends there is \
-         neither flow nor motion along x"
-    } else {
-        "y is measured upward from the base, fixed and impermeable, to the drained surface, which carries a \
-         uniform load; along x there is neither flow nor motion"
-    }
-}
-
 /// The time step that a solver may take, s.
 pub fn suggested_step(case: &Case) -> f64 {
-    if let TimeStepRule::Seconds(seconds) = case.time_step {
+    if let TimeStep::Seconds(seconds) = case.time_step {
         return seconds;
     }
     let of_mesh = STEP_ON_TEN_CELLS * powi(10.0 / case.cells as f64, 2);
@@ -203,14 +187,11 @@ fn units() -> BTreeMap<String, String> {
 mod tests {
     use super::*;
     use oedometer_case::Task;
+    use oedometer_scenes::{COSINE_LAYER, MANDEL, TERZAGHI};
     use serde_json::Value;
 
     fn seed() -> Case {
-        Case {
-            cells: 20,
-            time_factors: vec![0.0, 0.05, 1.0].into(),
-            ..Case::seed(Task::Solve, SceneKind::Terzaghi)
-        }
+        Case { cells: 20, time_factors: vec![0.0, 0.05, 1.0].into(), ..Case::seed(Task::Solve, &TERZAGHI) }
     }
 
     #[test]
@@ -231,7 +212,7 @@ mod tests {
         assert!((step(10) - 1e-3 * 81.75).abs() < 1e-12);
         assert!((step(10) / step(40) - 16.0).abs() < 1e-9);
         assert!((step(1) - 0.05 / 20.0 * 81.75).abs() < 1e-12, "a twentieth of the first output at most");
-        let given = Case { time_step: TimeStepRule::Seconds(0.5), ..seed() };
+        let given = Case { time_step: TimeStep::Seconds(0.5), ..seed() };
         assert_eq!(suggested_step(&given), 0.5);
     }
 
@@ -272,13 +253,13 @@ mod tests {
     #[test]
     fn the_axes_are_those_of_the_body_and_its_numbers_stand_at_their_keys() {
         for (scene, part) in [
-            (SceneKind::Terzaghi, "which carries a uniform load"),
-            (SceneKind::CosineLayer, "from the crest of the load"),
-            (SceneKind::Mandel, "from the middle of the slab"),
+            (&TERZAGHI, "which carries a uniform load"),
+            (&COSINE_LAYER, "from the crest of the load"),
+            (&MANDEL, "from the middle of the slab"),
         ] {
             let file = CaseFile::of(&Case::seed(Task::Solve, scene));
             assert!(file.axes.contains(part), "{scene:?}: {}", file.axes);
-            assert_eq!(file.column.base.is_some(), scene == SceneKind::CosineLayer, "{scene:?}");
+            assert_eq!(file.column.base.is_some(), scene == &COSINE_LAYER, "{scene:?}");
         }
         let mut case = seed();
         (case.column.height, case.column.load) = (2.0, 7e3);

@@ -312,7 +312,7 @@ fn lack(case: &Case, time_factor: f64, state: &SampledState, has_changing_mesh: 
     let is_held = column.points.is_regular();
     let stretch = bare(&state.initial_height, column.height, size, is_held);
     let of_height = stretch.map(|stretch| ("heights", stretch));
-    let is_plane = case.scene.has_plane_fields();
+    let is_plane = case.scene.body.is_plane();
     let along = || bare(&state.initial_distance, column.extent(), size, true);
     let of_length = || along().filter(|_| is_plane).map(|stretch| ("distances", stretch));
     let (places, [from, to]) = of_height.or_else(of_length)?;

@@ -273,7 +273,7 @@ mod tests {
 
     #[test]
     fn a_pressure_that_the_load_cannot_cause_is_told_wherever_it_stands() {
-        let mut case = Case::seed(oedometer_case::Task::Solve, oedometer_scenes::SceneKind::Terzaghi);
+        let mut case = Case::seed(oedometer_case::Task::Solve, &oedometer_scenes::TERZAGHI);
         case.column.load = 37.0;
         let told = |case: &Case, pressure: [f64; 3]| {
             beyond_the_load(case, &SampledState { pressure: pressure.to_vec(), ..SampledState::default() })
@@ -325,10 +325,7 @@ mod tests {
 
     #[test]
     fn a_result_has_at_most_the_heights_of_the_case() {
-        let case = Case {
-            cells: 4,
-            ..Case::seed(oedometer_case::Task::Solve, oedometer_scenes::SceneKind::Terzaghi)
-        };
+        let case = Case { cells: 4, ..Case::seed(oedometer_case::Task::Solve, &oedometer_scenes::TERZAGHI) };
         let is_other = |sample: Sample, heights: usize| {
             let height = |place: usize| case.column.height * place as f64 / heights as f64;
             let initial_height = (0..heights).map(height).collect();
@@ -383,7 +380,7 @@ mod tests {
         let case = Case {
             cells: 4,
             time_factors: vec![0.1].into(),
-            ..Case::seed(oedometer_case::Task::Solve, oedometer_scenes::SceneKind::Terzaghi)
+            ..Case::seed(oedometer_case::Task::Solve, &oedometer_scenes::TERZAGHI)
         };
         (folder, case)
     }

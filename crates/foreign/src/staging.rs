@@ -267,8 +267,8 @@ mod tests {
             cells: 7,
             points_per_cell: 3,
             time_factors: vec![0.1, 0.3].into(),
-            time_step: oedometer_problem::time_step::TimeStepRule::Seconds(0.002),
-            ..Case::seed(oedometer_case::Task::Solve, oedometer_scenes::SceneKind::Terzaghi)
+            time_step: oedometer_problem::time_step::TimeStep::Seconds(0.002),
+            ..Case::seed(oedometer_case::Task::Solve, &oedometer_scenes::TERZAGHI)
         };
         let solver = solver(Path::new("/studies"), &["sh"]);
         let filling = Filling::of(&case, &solver, Path::new("/f/case.json"), Path::new("/f/out"));

@@ -42,13 +42,13 @@ mod tests {
     use crate::kernel::body::Discrete;
     use oedometer_problem::method::Method;
     use oedometer_problem::problem::StartError;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::Scene;
     use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
 
     /// A scene's problem, discretised.
     pub(crate) fn column_problem<const D: usize>(
-        scene: SceneKind,
+        scene: &'static Scene,
         column: &Column,
         soil: &Material,
         method: Method,

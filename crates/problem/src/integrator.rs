@@ -3,7 +3,7 @@
 pub use crate::formulation::Formulation;
 
 use crate::settings::{Drag, ExplicitSettings, Scheme};
-use crate::time_step::TimeStepRule;
+use crate::time_step::TimeStep;
 use oedometer_soil::wording::words;
 
 /// Share of the critical step where an explicit run names no rule.
@@ -61,11 +61,11 @@ impl IntegratorKind {
     }
 
     /// Step rule where none is given.
-    pub fn default_rule(self) -> TimeStepRule {
+    pub fn default_rule(self) -> TimeStep {
         match self {
-            Self::Explicit => TimeStepRule::Stable(DEFAULT_SHARE),
-            Self::SemiImplicit => TimeStepRule::Stable(SEMI_IMPLICIT_SHARE),
-            Self::Implicit => TimeStepRule::Growth(DEFAULT_GROWTH),
+            Self::Explicit => TimeStep::Stable(DEFAULT_SHARE),
+            Self::SemiImplicit => TimeStep::Stable(SEMI_IMPLICIT_SHARE),
+            Self::Implicit => TimeStep::Growth(DEFAULT_GROWTH),
         }
     }
 
@@ -92,12 +92,12 @@ impl IntegratorKind {
     }
 
     /// Says why the integrator refuses a step rule, where it does.
-    pub fn refuses_rule(self, rule: TimeStepRule) -> Option<&'static str> {
+    pub fn refuses_rule(self, rule: TimeStep) -> Option<&'static str> {
         match (self, rule) {
-            (Self::Explicit, TimeStepRule::Growth(_)) => {
+            (Self::Explicit, TimeStep::Growth(_)) => {
                 Some("the explicit integrator cannot let its steps grow: its critical step bounds them")
             }
-            (Self::Explicit | Self::SemiImplicit, TimeStepRule::Tolerance(_)) => {
+            (Self::Explicit | Self::SemiImplicit, TimeStep::Tolerance(_)) => {
                 Some("only the implicit integrator estimates its own error in time")
             }
             _ => None,

@@ -2,7 +2,7 @@
 
 use crate::arrangement::Arrangement;
 use crate::forcing::Forcing;
-use crate::method::Method;
+use crate::method::{Configuration, Method};
 use oedometer_soil::layers::SoilLayers;
 use oedometer_soil::material::Material;
 use std::error::Error;
@@ -105,6 +105,16 @@ pub enum Strain {
     Small,
     /// Finite.
     Large,
+}
+
+impl Strain {
+    /// Configuration of the weights where a method leaves it open: small strain moves nothing.
+    pub fn configuration(self) -> Configuration {
+        match self {
+            Self::Small => Configuration::Frozen,
+            Self::Large => Configuration::Updated,
+        }
+    }
 }
 
 /// Origin of the points' state at the start.

@@ -2,11 +2,12 @@
 
 use oedometer_soil::elementary;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
-/// Rule by which the time step is chosen.
+/// Rule by which the time step is chosen: one of [`STEP_KINDS`] with a number.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum TimeStepRule {
+pub enum TimeStep {
     /// Share of the predicted critical step.
     Stable(f64),
     /// Share of `h/c`, the fastest wave's way through a cell.
@@ -20,17 +21,80 @@ pub enum TimeStepRule {
     Tolerance(f64),
 }
 
-impl TimeStepRule {
+/// A kind of rule: its word in study files and labels, what it makes of a number, and the least number with which a run
+/// comes to an end, with the reason.
+#[derive(Clone, Copy, Debug)]
+pub struct StepKind {
+    /// Word.
+    pub word: &'static str,
+    /// The rule with a number.
+    pub make: fn(f64) -> TimeStep,
+    /// Least number.
+    pub least: f64,
+    /// Why not a smaller one.
+    pub why: &'static str,
+}
+
+/// The kinds in the order of a table's keys.
+pub static STEP_KINDS: [StepKind; 5] = [
+    StepKind { word: "stable", make: TimeStep::Stable, least: 1e-9, why: NO_ERROR_LEFT },
+    StepKind { word: "courant", make: TimeStep::Courant, least: 1e-9, why: NO_ERROR_LEFT },
+    StepKind { word: "seconds", make: TimeStep::Seconds, least: 0.0, why: "" },
+    StepKind {
+        word: "growth",
+        make: TimeStep::Growth,
+        least: 1e-9,
+        why: "a smaller growth needs too many steps",
+    },
+    StepKind {
+        word: "tolerance",
+        make: TimeStep::Tolerance,
+        least: 1e-12,
+        why: "round-off is an error of that size",
+    },
+];
+const NO_ERROR_LEFT: &str = "smaller steps no longer reduce the error in time";
+
+impl fmt::Display for TimeStep {
+    /// As the command line takes it: `stable=0.8`.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let word = self.kind().word;
+        match self {
+            Self::Stable(number) | Self::Courant(number) | Self::Growth(number) => {
+                write!(out, "{word}={number}")
+            }
+            Self::Seconds(number) | Self::Tolerance(number) => write!(out, "{word}={number:e}"),
+        }
+    }
+}
+
+impl TimeStep {
+    /// Its kind.
+    pub fn kind(&self) -> &'static StepKind {
+        &STEP_KINDS[match self {
+            Self::Stable(_) => 0,
+            Self::Courant(_) => 1,
+            Self::Seconds(_) => 2,
+            Self::Growth(_) => 3,
+            Self::Tolerance(_) => 4,
+        }]
+    }
+
+    /// Its number.
+    pub fn number(&self) -> f64 {
+        match *self {
+            Self::Stable(number)
+            | Self::Courant(number)
+            | Self::Seconds(number)
+            | Self::Growth(number)
+            | Self::Tolerance(number) => number,
+        }
+    }
+
     /// The rule of the same kind with another number.
     #[must_use]
     pub fn with_number(self, number: f64) -> Self {
-        match self {
-            Self::Stable(_) => Self::Stable(number),
-            Self::Courant(_) => Self::Courant(number),
-            Self::Seconds(_) => Self::Seconds(number),
-            Self::Growth(_) => Self::Growth(number),
-            Self::Tolerance(_) => Self::Tolerance(number),
-        }
+        (self.kind().make)(number)
     }
 
     /// Its number: of two rules of a kind the larger one takes the longer steps.
@@ -54,18 +118,18 @@ impl TimeStepRule {
         }
     }
 
-    /// Limit of a run's steps, of at most `most` seconds: where they grow, the first ones resolve the first output as the
+    /// The steps of a run, of at most `most` seconds: where they grow, the first ones resolve the first output as the
     /// later ones theirs.
-    pub fn limit(&self, scales: &StepScales, most: f64, outputs: &[f64]) -> StepLimit {
+    pub fn steps(&self, scales: &StepScales, outputs: &[f64], most: f64) -> Steps {
         let target = self.first(scales);
         match self {
-            Self::Stable(_) | Self::Courant(_) | Self::Seconds(_) => StepLimit::Constant(target),
+            Self::Stable(_) | Self::Courant(_) | Self::Seconds(_) => Steps::Constant(target),
             Self::Growth(growth) => {
                 let first = outputs.iter().copied().find(|output| *output > 0.0);
                 let start = first.unwrap_or(f64::INFINITY).min(scales.diffusion());
-                StepLimit::Growing { first: growth * start, growth: *growth, most }
+                Steps::Growing { first: growth * start, growth: *growth, most }
             }
-            Self::Tolerance(tolerance) => StepLimit::Tolerance { first: target, tolerance: *tolerance },
+            Self::Tolerance(tolerance) => Steps::Tolerance { first: target, tolerance: *tolerance },
         }
     }
 }
@@ -130,9 +194,9 @@ impl EqualSteps {
 /// Step sizes grow by this factor from one level to the next.
 const LEVEL_RATIO: f64 = std::f64::consts::SQRT_2;
 
-/// Limit of the step size at a time.
+/// What becomes of a rule in a run: the limit of the step size at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum StepLimit {
+pub enum Steps {
     /// One step size at all times, s.
     Constant(f64),
     /// `max(Δt₀, α t)`: consolidation slows down as the square root of time, and so may the steps.
@@ -153,7 +217,7 @@ pub enum StepLimit {
     },
 }
 
-impl StepLimit {
+impl Steps {
     /// The steps to take next from `time` towards `output`: of one size, which is at most the
     /// limit wherever it is taken, and that end at `output` or where larger ones may begin.
     pub fn row(&self, time: f64, output: f64) -> EqualSteps {
@@ -218,7 +282,7 @@ mod tests {
         fn growing_steps_keep_to_their_limit_and_come_in_few_sizes(
             growth in 0.005..0.5_f64, first in 1e-6..1e-2_f64,
         ) {
-            let limit = StepLimit::Growing { first, growth, most: f64::INFINITY };
+            let limit = Steps::Growing { first, growth, most: f64::INFINITY };
             let outputs = [0.05, 0.1, 1.0];
             let (mut time, mut sizes, mut steps) = (0.0, 0, 0);
             for output in outputs {
@@ -242,14 +306,14 @@ mod tests {
 
     #[test]
     fn constant_steps_fill_the_interval() {
-        assert_eq!(StepLimit::Constant(0.3).row(0.1, 1.0), EqualSteps::first(0.1, 0.3, 3));
-        assert_eq!(StepLimit::Constant(0.4).row(0.0, 1.0).count, 3);
-        assert_eq!(StepLimit::Constant(0.25).expected_steps(1.0), 4);
+        assert_eq!(Steps::Constant(0.3).row(0.1, 1.0), EqualSteps::first(0.1, 0.3, 3));
+        assert_eq!(Steps::Constant(0.4).row(0.0, 1.0).count, 3);
+        assert_eq!(Steps::Constant(0.25).expected_steps(1.0), 4);
     }
 
     #[test]
     fn growing_steps_stop_at_their_largest_size() {
-        let limit = StepLimit::Growing { first: 1e-3, growth: 0.1, most: 7e-3 };
+        let limit = Steps::Growing { first: 1e-3, growth: 0.1, most: 7e-3 };
         let (mut time, mut largest) = (0.0, 0.0_f64);
         // After the first output a tenth of the time is far more.
         for output in [1.0, 2.0] {
@@ -261,5 +325,15 @@ mod tests {
         }
         // Levels of a root of two from the first: the last below 7e-3 is 5.66e-3.
         assert!(largest <= 7e-3 && largest > 5e-3, "{largest:e}");
+    }
+
+    #[test]
+    fn a_rule_is_its_kind_with_its_number() {
+        for kind in &STEP_KINDS {
+            let rule = (kind.make)(0.25);
+            assert_eq!((rule.kind().word, rule.number()), (kind.word, 0.25));
+            assert_eq!(rule.with_number(0.5), (kind.make)(0.5));
+            assert!(rule.to_string().starts_with(&format!("{}=", kind.word)), "{rule}");
+        }
     }
 }

@@ -4,47 +4,51 @@
 #![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
 
 use crate::column::{Column, Shape, column_parameters};
-use crate::definition::{SceneBody, SceneDefinition};
+use crate::scene::{Allowed, Body, Check, Clock, Laws, Question, Scene};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::manufactured::Manufactured;
 use oedometer_exact::manufactured::dual::{Four, PLACES};
 use oedometer_exact::manufactured::motion::ManufacturedModel;
-use oedometer_exact::manufactured::motion::{Motion, Spot, Spots};
+use oedometer_exact::manufactured::motion::{Spot, Spots};
 use oedometer_exact::manufactured::motion_state::Inertia;
-use oedometer_exact::reference::ReferenceKind;
 use oedometer_problem::forcing::{BodyForces, Forcing};
 use oedometer_problem::formulation::Formulation;
+use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::problem::{MakeForcing, Strain};
+use oedometer_problem::settings::{Drag, ExplicitSettings, Scheme};
 use oedometer_soil::material::Material;
 use oedometer_soil::motion::MotionParameters;
 use oedometer_soil::wide::wide;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-pub(crate) static BOX: SceneDefinition = SceneDefinition {
-    summary: "square stretched along its axes by body forces and back: exact fields at large strain in the plane",
-    references: &[ReferenceKind::Manufactured(ManufacturedModel::with_default_law(Motion::Box))],
-    ..OF_ALL
-};
-
-pub(crate) static SHEAR: SceneDefinition = SceneDefinition {
-    summary: "the same with shear inside, in a neo-Hookean soil",
-    references: &[ReferenceKind::Manufactured(ManufacturedModel::with_default_law(Motion::Shear))],
-    ..OF_ALL
-};
-
-pub(crate) static VORTEX: SceneDefinition = SceneDefinition {
-    summary: "a disc that rotates inside a square and back: separates rotating from non-rotating particle domains",
-    references: &[ReferenceKind::Manufactured(ManufacturedModel::with_default_law(Motion::Vortex))],
-    ..OF_ALL
-};
-
-/// Common definition of the motions: at the start there is no displacement, pressure or velocity.
-const OF_ALL: SceneDefinition = SceneDefinition {
-    body: SceneBody::Square,
+/// What the motions have in common: at the start there is no displacement, pressure or velocity.
+pub(crate) const OF_ALL: Scene = Scene {
+    question: Question::MovingPoints,
+    body: Body::Square,
     strain: Strain::Large,
-    has_waves: true,
-    ..SceneDefinition::UNLOADED
+    waves: true,
+    laws: Laws::AlongMotion,
+    // Of second order in the step, for a smooth motion is compared with exact fields.
+    settings: || ExplicitSettings {
+        scheme: Scheme::Leapfrog,
+        drag: Drag::Centred,
+        ..ExplicitSettings::default()
+    },
+    integrators: Allowed {
+        list: &[IntegratorKind::Explicit, IntegratorKind::Implicit],
+        why: "body forces and source of a manufactured motion act at the stages of explicit and implicit steps: a \
+              semi-implicit one takes stress and pressure at times of their own",
+        instead: "take `integrator = [\"explicit\"]`, or leave the key out",
+    },
+    clock: Clock::Motion,
+    outputs: |_, _| vec![0.1, 0.2, 0.3, 0.4],
+    unjudged: &[
+        (Check::Unbalanced, "the body forces that make the motion start suddenly"),
+        (Check::Equilibrium, "a motion made by body forces does not balance a load"),
+        (Check::Pressure, "body forces make the pressure"),
+    ],
+    ..Scene::COLUMN
 };
 
 /// A soil whose groups are of order one: `λ = μ = 0.4`, `K_w = 20 E`, `γ_w/k_0 = 10`, and so many pores that volumes
@@ -63,14 +67,8 @@ pub(crate) fn soil() -> Material {
     }
 }
 
-/// The unit square with the amplitudes of a motion.
-pub(crate) fn square(motion: Option<Motion>) -> Column {
-    let [amplitude_x, amplitude_y, amplitude] = match motion {
-        None => [0.0; 3],
-        Some(Motion::Box) => [0.25, 0.25, 0.0],
-        Some(Motion::Shear) => [0.25, -0.2, 0.0],
-        Some(Motion::Vortex) => [0.0, 0.0, 1.5],
-    };
+/// The unit square with the amplitudes of a motion: of the stretches along x and y, and of a vortex.
+pub(crate) fn square([amplitude_x, amplitude_y, amplitude]: [f64; 3]) -> Column {
     let motion = MotionParameters { amplitude_x, amplitude_y, amplitude, frequency: FRAC_PI_2 };
     Column { shape: Shape::Square { motion, pressure: 0.2 }, dimensions: 2, load: 0.0, ..Column::default() }
 }

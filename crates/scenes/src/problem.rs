@@ -1,9 +1,8 @@
 //! A scene's problem: what a solver has to know of it, as plain data.
 
 use crate::column::{Column, Undrained, column_parameters};
-use crate::definition::{SceneLoad, SceneStart};
 use crate::manufactured;
-use crate::scene::SceneKind;
+use crate::scene::{Body, LoadKind, Question, Scene, StartOf};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_problem::method::Method;
 use oedometer_problem::problem::{Faces, Load, Problem, Start, Weight};
@@ -14,13 +13,13 @@ use std::sync::Arc;
 /// Share of its conductivity that a sealed soil keeps.
 const SEALED: f64 = 1e-12;
 
-impl SceneKind {
+impl Scene {
     /// The scene's problem on `cells` cells over the height with `points_per_cell` points each.
     ///
     /// # Errors
     /// When the parameters are impossible.
     pub fn problem(
-        self,
+        &self,
         column: &Column,
         soil: &Material,
         method: Method,
@@ -47,63 +46,60 @@ impl SceneKind {
             material: self.soil_under_load(soil),
             layers: column.soils,
             initial_stress: column.initial_stress,
-            start: match &self.definition().start {
-                SceneStart::OverDepth(start) => start(column, soil)?,
-                SceneStart::Solved => Start::Undrained,
+            start: match &self.start {
+                StartOf::OverDepth(start) => start(column, soil)?,
+                StartOf::Undrained => Start::Undrained,
             },
-            strain: self.definition().strain,
+            strain: self.strain,
             weight: column.self_weight.then(|| self.weight(column, soil)),
-            forcing: self.model().map(|model| manufactured::forcing(model, column, soil)).transpose()?,
+            forcing: self.motion.map(|model| manufactured::forcing(model, column, soil)).transpose()?,
             pressure_scale,
             method: method_under(method, load),
             load,
         })
     }
 
-    fn faces(self, column: &Column) -> Faces {
-        if self.is_manufactured() {
-            Faces::Closed
-        } else if column.base() == Some(Base::Rough) {
-            Faces::RoughBase
-        } else if self.has_plates() {
-            Faces::MovableSide
-        } else {
-            Faces::Oedometer
+    fn faces(&self, column: &Column) -> Faces {
+        match self.body {
+            Body::Square => Faces::Closed,
+            Body::Slab => Faces::MovableSide,
+            Body::Column | Body::Layer if column.base() == Some(Base::Rough) => Faces::RoughBase,
+            Body::Column | Body::Layer => Faces::Oedometer,
         }
     }
 
-    /// What acts on the body; a footing is pushed by its width in the time of `T_v = 1`.
-    fn load_of(self, column: &Column, soil: &Material) -> Load {
-        if self == Self::Footing {
-            let plate = &column.footing;
-            return Load::Push {
-                extent: 0.5 * plate.width,
-                velocity: plate.width / column_parameters(column, soil).time(1.0),
-                is_rough: plate.contact == Base::Rough,
-                has_water: plate.undrained == Undrained::TwoPhase,
-            };
-        }
-        match self.definition().load {
-            SceneLoad::None => Load::None,
-            SceneLoad::Sudden | SceneLoad::SuddenOrGrowing(_) => Load::Uniform(column.load),
-            SceneLoad::Plates => Load::Plate(column.load),
-            SceneLoad::Cosine => Load::Cosine { amplitude: column.load, length: column.extent() },
+    /// What acts on the body; a plate is pushed by its width in the time of `T_v = 1`.
+    fn load_of(&self, column: &Column, soil: &Material) -> Load {
+        match self.load {
+            LoadKind::None => Load::None,
+            LoadKind::Uniform => Load::Uniform(column.load),
+            LoadKind::Plates => Load::Plate(column.load),
+            LoadKind::Cosine => Load::Cosine { amplitude: column.load, length: column.extent() },
+            LoadKind::Pushed => {
+                let plate = &column.footing;
+                Load::Push {
+                    extent: 0.5 * plate.width,
+                    velocity: plate.width / column_parameters(column, soil).time(1.0),
+                    is_rough: plate.contact == Base::Rough,
+                    has_water: plate.undrained == Undrained::TwoPhase,
+                }
+            }
         }
     }
 
     /// A scene's soil: what no water leaves is a soil that lets none through.
-    fn soil_under_load(self, soil: &Material) -> Material {
-        let sealing = if self == Self::SealedElement { SEALED } else { 1.0 };
+    fn soil_under_load(&self, soil: &Material) -> Material {
+        let sealing = if self.sealed { SEALED } else { 1.0 };
         Material { hydraulic_conductivity: sealing * soil.hydraulic_conductivity, ..*soil }
     }
 
-    fn weight(self, column: &Column, soil: &Material) -> Weight {
+    fn weight(&self, column: &Column, soil: &Material) -> Weight {
         let parameters = column_parameters(column, soil);
         Weight {
             gravity: soil.gravity,
             stress: Arc::new(move |depth| parameters.initial_stress(depth)),
             // A column at rest is there to show what a method leaves unbalanced.
-            is_balanced: !self.is_at_rest(),
+            is_balanced: self.question != Question::Rest,
         }
     }
 }

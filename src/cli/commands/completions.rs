@@ -8,7 +8,7 @@ use clap_complete::Shell;
 use oedometer_exact::{ReferenceKind, ShelfProblem};
 use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::method::Method;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::SCENES;
 
 /// Arguments of `completions`.
 #[derive(Debug, clap::Args)]
@@ -22,7 +22,7 @@ fn with_names(command: clap::Command) -> clap::Command {
     // clap keeps names as long as the program runs.
     let lasting = |names: Vec<String>| names.into_iter().map(|name| &*name.leak()).collect::<Vec<&str>>();
     let references: Vec<&str> = ReferenceKind::ALL.iter().map(|kind| kind.name()).collect();
-    let scenes: Vec<&str> = SceneKind::ALL.iter().map(|scene| scene.name()).collect();
+    let scenes: Vec<&str> = SCENES.iter().map(|scene| scene.name).collect();
     let with_shelf = |names: &[&'static str]| [names, &ShelfProblem::NAMES].concat();
     let integrators = IntegratorKind::ALL.iter().map(|integrator| integrator.name()).collect();
     let named = [
@@ -65,7 +65,7 @@ mod tests {
             let argument = found.get_arguments().find(|one| one.get_id() == argument).expect("an argument");
             argument.get_possible_values().iter().map(|value| value.get_name().to_owned()).collect()
         };
-        let scenes: Vec<&str> = SceneKind::ALL.iter().map(|scene| scene.name()).collect();
+        let scenes: Vec<&str> = SCENES.iter().map(|scene| scene.name).collect();
         let references: Vec<&str> = ReferenceKind::ALL.iter().map(|kind| kind.name()).collect();
         let shelf =
             ["biot-column", "cryer", "barron", "barron-free-strain", "seabed", "injection", "davis-raymond"];

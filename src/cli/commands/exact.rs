@@ -14,7 +14,7 @@ use oedometer_exact::mandel::Mandel;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
 use oedometer_exact::{ShelfProblem, consolidation};
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::scene::Clock;
 use oedometer_soil::wording::{count_of, typed};
 
 /// Distances from the middle of a slab if none are given.
@@ -140,14 +140,14 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     tell_warnings(&asked.study);
     let (parameters, kind) = (asked.parameters, asked.references[0]);
     // These have none of their own at the usual times.
-    let has_other_times = matches!(asked.study.scene, SceneKind::YieldFront | SceneKind::StandingWave);
+    let has_other_times = matches!(asked.study.scene.clock, Clock::HalfSpace | Clock::Wave);
     let time_factors = match (&arguments.degree, &arguments.times, &arguments.time_factor) {
         (Some(degrees), ..) => time_factors_of(kind, &parameters, &numbers("--degree", degrees)?)?,
         (_, Some(typed), _) => time_factors_at(kind, &parameters, &times("--time", typed)?)?,
         (_, _, Some(typed)) => numbers("--time-factor", typed)?,
         _ if has_other_times => {
             let case = &asked.study.planned[0].case;
-            case.scene.default_time_factors(&case.column, &case.material)
+            (case.scene.outputs)(&case.column, &case.material)
         }
         _ => DEFAULT_TIMES.to_vec(),
     };

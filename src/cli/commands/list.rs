@@ -9,7 +9,7 @@ use crate::study::shipped::{shipped_names, shipped_study, shipped_titles};
 use oedometer_exact::{ReferenceKind, ShelfProblem};
 use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::method::Method;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::SCENES;
 use std::fmt::Write;
 
 /// Arguments of `list`.
@@ -30,8 +30,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     let mut out = String::new();
     writeln!(out, "scenes")?;
-    for scene in SceneKind::ALL {
-        writeln!(out, "  {:<26} {}", scene.name(), scene.summary())?;
+    for scene in SCENES {
+        writeln!(out, "  {:<26} {}", scene.name, scene.summary)?;
     }
     writeln!(out, "methods")?;
     let racing = CONTENDERS.iter().map(|contender| contender.name.to_owned());

@@ -3,7 +3,6 @@
 use crate::campaign::case_run::{ThisProgram, all_cores};
 use crate::campaign::endless::refuse_endless;
 use crate::campaign::runner::LongestCase;
-use crate::case::Case;
 use crate::case::outcome::{Course, Solver};
 use crate::case::planned::{PlannedCase, Tier};
 use crate::cli::exit::{Ended, Exit};
@@ -26,7 +25,6 @@ use crate::study::check::{Purpose, Study};
 use crate::study::overrides::{Outputs, StudyLines, TIMING, step_rule, toml_of};
 use oedometer_mpm::run::Kernel;
 use oedometer_problem::outcome::{Counters, Failure, StepSizes};
-use oedometer_scenes::SceneKind;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
@@ -155,7 +153,7 @@ fn print_meshes(study: &Study, records: &[Record], format: SolveFormat) -> anyho
 
 /// The errors of a run; of a footing the load itself is asked for, beside its error.
 fn csv_rows(record: &Record) -> impl Iterator<Item = Vec<String>> + '_ {
-    let is_footing = record.case.scene == SceneKind::Footing;
+    let is_footing = record.case.scene.measures(Quantity::LoadFactor);
     let loads = record.measures.iter().filter(move |_| is_footing).map(|row| row.csv_fields().to_vec());
     record.errors.iter().map(|row| row.csv_fields().to_vec()).chain(loads)
 }

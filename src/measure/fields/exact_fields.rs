@@ -203,7 +203,7 @@ mod tests {
     use crate::case::Task;
     use oedometer_exact::parameters::ColumnParameters;
     use oedometer_exact::reference::ReferenceKind;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::TERZAGHI;
     use oedometer_scenes::column::column_parameters;
 
     #[test]
@@ -232,7 +232,7 @@ mod tests {
 
     #[test]
     fn exact_displacements_are_those_at_their_own_heights() {
-        let case = Case::seed(Task::Solve, SceneKind::Terzaghi);
+        let case = Case::seed(Task::Solve, &TERZAGHI);
         let column = column_parameters(&case.column, &case.material);
         let reference = Reference::new(ReferenceKind::Terzaghi, &column, &[0.1]).expect("the seed column");
         let at = |height: f64| reference.fields(0.1, 1.0 - height / column.height).expect("inside");

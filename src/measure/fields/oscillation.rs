@@ -146,7 +146,7 @@ impl PlaneField {
 fn exact_pressure(record: &Record, time_factor: f64, points: &Samples) -> Result<Arc<Vec<f64>>, ExactError> {
     static KNOWN: Known<Arc<Vec<f64>>> = LazyLock::new(Mutex::default);
     let case = &record.case;
-    let own = case.scene.references()[0].for_soil(&case.material);
+    let own = case.scene.references[0].kind.for_soil(&case.material);
     let lattice = format!("{} {} {}", case.cells, case.points_per_cell, points.pressure.len());
     let key = key_of(case, own, &[time_factor]) + &lattice;
     known_or(&KNOWN, key, || {

@@ -133,7 +133,7 @@ impl ConvergesFinding {
     pub(super) fn new(results: &[StudyResults<'_>]) -> Option<Self> {
         let is_small = |case: &Case| {
             let scene = case.scene;
-            !scene.is_large_strain() && !scene.has_waves() && !scene.has_plane_fields() && scene.is_loaded()
+            !scene.is_large_strain() && !scene.waves && !scene.body.is_plane() && scene.is_loaded()
         };
         let is_large = |case: &Case| case.scene.is_large_strain();
         let columns = [refined_column(results, &is_small), refined_column(results, &is_large)];

@@ -10,8 +10,8 @@ use crate::questions::published_equations::{LARGE_STRAIN_LOAD, PublishedEquation
 use crate::questions::study_results::StudyResults;
 use crate::record::{Record, Status};
 use oedometer_exact::ExactError;
-use oedometer_scenes::SceneKind;
 use oedometer_scenes::column::Column;
+use oedometer_scenes::{TERZAGHI, XIE_LEO};
 use oedometer_soil::material::Material;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -130,11 +130,7 @@ pub(crate) fn largest_pressure_error(record: &Record, reference: &str) -> Option
 
 /// Whether a case is of the soil, height and, at large strain, load of Figs 3 and 4.
 fn is_papers_column(case: &Case, is_large: bool) -> bool {
-    let (scene, load) = if is_large {
-        (SceneKind::XieLeo, LARGE_STRAIN_LOAD)
-    } else {
-        (SceneKind::Terzaghi, case.column.load)
-    };
+    let (scene, load) = if is_large { (&XIE_LEO, LARGE_STRAIN_LOAD) } else { (&TERZAGHI, case.column.load) };
     let papers = Column { load, points: case.column.points, ..Column::default() };
     let soil =
         Material { law: case.material.law, continuity: case.material.continuity, ..Material::default() };

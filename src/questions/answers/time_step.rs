@@ -1,6 +1,6 @@
 //! What does the time step change? The order in the step, what it leaves of the error, and from where on it is unstable.
 
-use crate::case::{Quantity, Sample, step_label};
+use crate::case::{Quantity, Sample};
 use crate::judge::path_labels::path_labels;
 use crate::judge::paths::{Path, first_measure, grouped, shown_time};
 use crate::questions::answers::study_with_most;
@@ -109,7 +109,7 @@ impl TimeStepFinding {
             let record = row.unstable?;
             Some(UnstableStep {
                 run: row.label.clone(),
-                step: step_label(&record.case.time_step),
+                step: record.case.time_step.to_string(),
                 ending: record.status.name().clone(),
             })
         });
@@ -134,7 +134,7 @@ fn failed_alone(one: &StudyResults<'_>) -> Vec<UnstableStep> {
     let runs = grouped(failed, |record| format!("{}, {}", record.case.method, record.case.integrator.name()));
     let smallest = |(run, records): (String, Vec<&Record>)| {
         let least = records.into_iter().min_by(|a, b| a.step_sizes.target.total_cmp(&b.step_sizes.target))?;
-        let (step, ending) = (step_label(&least.case.time_step), least.status.name().clone());
+        let (step, ending) = (least.case.time_step.to_string(), least.status.name().clone());
         Some(UnstableStep { run, step, ending })
     };
     runs.into_iter().filter_map(smallest).collect()
@@ -164,7 +164,7 @@ impl<'a> Row<'a> {
         let (coarse, fine) = (coarse?, fine?);
         Some(StepChange {
             run: self.label.clone(),
-            steps: [largest, smallest].map(|record| step_label(&record.case.time_step)),
+            steps: [largest, smallest].map(|record| record.case.time_step.to_string()),
             errors: [coarse, fine],
             is_of_step: coarse / fine > STEP_COUNTS,
         })
@@ -193,7 +193,7 @@ mod tests {
             record.status = failed_at(1);
         }
         let found = TimeStepFinding::new(&[StudyResults::new(&study, &records, Tier::Full)]).expect("steps");
-        let step = |place: usize| step_label(&records[place].case.time_step);
+        let step = |place: usize| records[place].case.time_step.to_string();
         assert_eq!(found.unstable.len(), 1);
         assert_eq!((&found.unstable[0].step, found.unstable[0].ending.as_str()), (&step(1), "unstable"));
         assert_eq!(found.most.expect("two are left").steps, [2, 3].map(step));

@@ -1,5 +1,6 @@
 //! A plane: pressure fields beside the exact one; of a footing the load over the settlement of all methods.
 
+use crate::case::Quantity;
 use crate::judge::paths::grouped;
 use crate::measure::fields::PlaneField;
 use crate::questions::blocks::Point;
@@ -7,7 +8,6 @@ use crate::questions::study_results::StudyResults;
 use crate::record::{Record, Status};
 use oedometer_exact::ExactError;
 use oedometer_exact::footing::LOAD_FACTOR;
-use oedometer_scenes::SceneKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -58,7 +58,8 @@ impl FieldsFinding {
     pub fn new(results: &StudyResults<'_>) -> Result<Option<Self>, ExactError> {
         let scene = results.study.scene;
         let shown = shown_records(results.records);
-        let Some(first) = shown.first().filter(|_| scene.has_plane_fields() && scene != SceneKind::Footing)
+        let Some(first) =
+            shown.first().filter(|_| scene.body.is_plane() && scene.measures(Quantity::Pressure))
         else {
             return Ok(None);
         };
@@ -149,7 +150,7 @@ impl LoadCurves {
     pub fn new(results: &StudyResults<'_>) -> Option<Self> {
         let undrained = results.records.first()?.case.column.footing.undrained;
         let is_drawn = |record: &&Record| {
-            results.study.scene == SceneKind::Footing
+            results.study.scene.measures(Quantity::LoadFactor)
                 && record.status == Status::Ok
                 && record.case.column.footing.undrained == undrained
         };

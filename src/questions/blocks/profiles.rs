@@ -13,7 +13,7 @@ use crate::questions::study_results::StudyResults;
 use crate::record::{Record, Status};
 use oedometer_exact::ExactError;
 use oedometer_exact::reference::ReferenceKind;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::scene::{Clock, Question};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -112,9 +112,8 @@ impl ProfilesFinding {
     /// When the reference refuses a case.
     pub fn new(results: &StudyResults<'_>) -> Result<Option<Self>, ExactError> {
         let scene = results.study.scene;
-        let shown =
-            shown_records(results.records, matches!(scene, SceneKind::Layered | SceneKind::YieldFront));
-        if shown.len() < 2 || scene.has_plane_fields() {
+        let shown = shown_records(results.records, scene.question == Question::Layers);
+        if shown.len() < 2 || scene.body.is_plane() {
             return Ok(None);
         }
         let own = results.study.references[0];
@@ -122,7 +121,7 @@ impl ProfilesFinding {
         let ends = shown.first().into_iter().chain(shown.last());
         let isochrones = ends.map(|record| Isochrones::new(record, own)).collect::<Result<_, _>>()?;
         // A half-space has no settlement in the end.
-        let is_half_space = scene == SceneKind::YieldFront;
+        let is_half_space = scene.clock == Clock::HalfSpace;
         let consolidation = if is_half_space || coincide(results, &shown) {
             None
         } else {
@@ -152,7 +151,7 @@ impl Isochrones {
             sample: (!record.case.has_integrator()).then(|| record.main_sample()),
             reference: own.name().to_owned(),
             is_large_strain: record.case.scene.is_large_strain(),
-            has_waves: record.case.scene.has_waves(),
+            has_waves: record.case.scene.waves,
             curves: curves.collect(),
         })
     }

@@ -1,7 +1,6 @@
 //! Errors under refinement along an axis: which figures and tables a page shows, and every row of the tables of orders.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::case::step_label;
 use crate::judge::path_labels::path_labels;
 use crate::judge::paths::{Path, SeriesSummary, common_times, first_measure, shown_time};
 use crate::questions::blocks::drawn::{DrawnSeries, drawn};
@@ -12,8 +11,7 @@ use crate::questions::study_results::StudyResults;
 use crate::record::Record;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
 use oedometer_convergence::{Class, Undefined};
-use oedometer_problem::time_step::TimeStepRule;
-use oedometer_scenes::SceneKind;
+use oedometer_problem::time_step::TimeStep;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -118,9 +116,9 @@ pub enum OrderFound {
 
 /// Quantities of the figures, side by side: the settlement of a column, the displacement of a layer.
 fn panels(results: &StudyResults<'_>) -> [(Quantity, Sample); 4] {
-    let of_the_body = if results.study.scene == SceneKind::Footing {
+    let of_the_body = if results.study.scene.measures(Quantity::LoadFactor) {
         (Quantity::LoadFactor, Sample::Surface)
-    } else if results.study.scene.has_plane_fields() {
+    } else if results.study.scene.body.is_plane() {
         (Quantity::Displacement, Sample::Nodes)
     } else {
         (Quantity::Settlement, Sample::Surface)
@@ -276,8 +274,8 @@ impl LevelKey {
             Axis::PointsPerCell => Self::PointsPerCell(case.points_per_cell),
             Axis::WaterBulkModulus => Self::WaterBulkModulus(case.material.water_bulk_modulus),
             Axis::TimeStep => match case.time_step {
-                TimeStepRule::Seconds(seconds) => Self::Seconds(seconds),
-                rule => Self::StepRule(step_label(&rule)),
+                TimeStep::Seconds(seconds) => Self::Seconds(seconds),
+                rule => Self::StepRule(rule.to_string()),
             },
         }
     }

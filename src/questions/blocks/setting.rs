@@ -2,9 +2,8 @@
 
 use crate::case::Case;
 use crate::record::Record;
-use oedometer_scenes::SceneKind;
 use oedometer_scenes::column::column_parameters;
-use oedometer_soil::elementary;
+use oedometer_scenes::scene::Clock;
 use oedometer_soil::material::Material;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -126,22 +125,14 @@ fn range(cases: &[&Case], value: impl Fn(&Case) -> f64) -> Option<Range> {
 
 /// What the surface of a column settles by in the end, m.
 pub fn final_settlement(case: &Case) -> Option<f64> {
-    match case.scene {
-        // Each layer has its own share.
-        _ if !case.column.soils.is_empty() => None,
-        SceneKind::Terzaghi => Some(column_parameters(&case.column, &case.material).final_settlement()),
-        SceneKind::XieLeo => {
-            let strain = 1.0 - elementary::exp(-case.column.load / case.material.oedometric_modulus());
-            Some(case.column.height * strain)
-        }
-        _ => None,
-    }
+    // Each layer has its own share.
+    let settlement = case.scene.final_settlement.filter(|_| case.column.soils.is_empty())?;
+    Some(settlement(&case.column, &case.material))
 }
 
 /// What a time factor of one is on the clock, s, where the scene consolidates.
 pub fn unit_of_time(case: &Case) -> Option<f64> {
-    let is_fast = matches!(case.scene, SceneKind::Footing | SceneKind::SealedElement);
-    let consolidates = case.scene.is_loaded() && !is_fast;
+    let consolidates = matches!(case.scene.clock, Clock::Consolidation | Clock::HalfSpace);
     consolidates.then(|| column_parameters(&case.column, &case.material).time(1.0))
 }
 
@@ -149,6 +140,7 @@ pub fn unit_of_time(case: &Case) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
+    use oedometer_scenes::{COSINE_LAYER, XIE_LEO};
 
     #[test]
     fn what_consolidates_has_a_settlement_and_a_unit_of_time() {
@@ -166,9 +158,9 @@ mod tests {
         let near =
             |value: Option<f64>, wanted: f64| value.is_some_and(|value| (value / wanted - 1.0).abs() < 0.01);
         assert!(near(final_settlement(&column), 0.02) && near(unit_of_time(&column), 327.0));
-        column.scene = SceneKind::XieLeo;
+        column.scene = &XIE_LEO;
         assert!(near(final_settlement(&column), 2.0 * (1.0 - (-0.01_f64).exp())), "logarithmic strain");
-        column.scene = SceneKind::CosineLayer;
+        column.scene = &COSINE_LAYER;
         assert_eq!(final_settlement(&column), None);
     }
 }

@@ -7,7 +7,6 @@ use crate::record::{Record, Status};
 use crate::study::check::Study;
 use oedometer_exact::ExactError;
 use oedometer_problem::outcome::Failure;
-use oedometer_scenes::SceneKind;
 use std::collections::BTreeSet;
 
 /// The methods of records, each once, in their order.
@@ -148,7 +147,7 @@ impl StiffnessSweep {
         stiffness: SweptStiffness,
     ) -> Result<Option<Self>, ExactError> {
         // The fields under a footing are not unique.
-        if study.scene == SceneKind::Footing {
+        if !study.scene.measures(Quantity::Pressure) {
             return Ok(None);
         }
         let implicit = || records.iter().filter(|record| !record.case.is_explicit());

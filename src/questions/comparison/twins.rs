@@ -187,7 +187,7 @@ impl Situation {
             && groups.inertia >= USUAL_INERTIA
             && last >= EARLY;
         match () {
-            () if case.scene.has_waves() => Self::Waves,
+            () if case.scene.waves => Self::Waves,
             () if !column.points.is_regular() || case.points_per_cell == 1 => Self::OutOfPlace,
             () if !is_usual => Self::Extreme,
             () => Self::Usual,
@@ -200,7 +200,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::record::WallSample;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::{DYNAMIC_COLUMN, MANUFACTURED_BOX};
 
     #[test]
     fn twins_differ_in_one_input_alone() {
@@ -320,7 +320,7 @@ mod tests {
             large.case.column.loading_time = loading_time;
             assert_eq!(Situation::of(&large), expected, "{strain} {loading_time}");
         }
-        large.case.scene = SceneKind::ManufacturedBox;
+        large.case.scene = &MANUFACTURED_BOX;
         assert_eq!(Situation::of(&large), BodyForces);
         // Every range of a usual soil, just inside and just outside of both ends.
         let usual = record("terzaghi");
@@ -341,7 +341,7 @@ mod tests {
                     // Waves and places come before the soil.
                     one.case.points_per_cell = 1;
                     assert_eq!(Situation::of(&one), OutOfPlace, "{value} of input {number}");
-                    one.case.scene = SceneKind::DynamicColumn;
+                    one.case.scene = &DYNAMIC_COLUMN;
                     assert_eq!(Situation::of(&one), Waves, "{value} of input {number}");
                 }
             }

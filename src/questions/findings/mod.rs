@@ -191,7 +191,7 @@ impl Findings {
         Ok(Self {
             schema: SCHEMA,
             study: study.name.clone(),
-            scene: study.scene.name().to_owned(),
+            scene: study.scene.name.to_owned(),
             references: study.references.iter().map(|kind| kind.name().to_owned()).collect(),
             left_out: study.cases(Tier::Full).len().saturating_sub(records.len()),
             expectations: check.judgements.iter().map(ExpectationFinding::new).collect(),

@@ -2,13 +2,13 @@
 //! output, in every problem of the study, on this mesh and all finer ones.
 
 use crate::case::grouping::distinct;
-use crate::case::{Case, Quantity, Sample, step_label};
+use crate::case::{Case, Quantity, Sample};
 use crate::judge::paths::grouped;
 use crate::judge::reaching::QuotedRuns;
 use crate::record::calibration::cost_of;
 use crate::record::{ErrorRow, Record};
 use crate::study::check::Study;
-use oedometer_problem::time_step::TimeStepRule;
+use oedometer_problem::time_step::TimeStep;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -256,7 +256,7 @@ impl WithinFinding {
         Self {
             method: case.method.to_string(),
             integrator: here(case.integrator.name().to_owned()),
-            step_rule: here(step_label(&case.time_step)),
+            step_rule: here(case.time_step.to_string()),
             cells: case.cells,
             points_per_cell: case.points_per_cell,
             largest_step: if case.counts_work() { record.step_sizes.largest } else { 0.0 },
@@ -298,7 +298,7 @@ pub(crate) fn choice(case: &Case) -> u64 {
     case.number_with(|case| {
         let seed = Case::seed(case.task, case.scene);
         (case.column, case.material, case.time_factors) = (seed.column, seed.material, seed.time_factors);
-        if let TimeStepRule::Seconds(_) = case.time_step {
+        if let TimeStep::Seconds(_) = case.time_step {
             case.time_step = seed.time_step;
         }
     })

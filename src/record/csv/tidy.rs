@@ -106,7 +106,7 @@ fn last_fields(record: &Record) -> [String; LAST_COLUMNS.len() - 1] {
     let wall = quickest(&record.wall);
     let seconds = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:e}"));
     [
-        case.scene.name().to_owned(),
+        case.scene.name.to_owned(),
         case.task.name().to_owned(),
         case.cell_size().to_string(),
         seconds(wall.map(|sample| sample.seconds)),

@@ -7,7 +7,7 @@ use crate::measure::record::record_of;
 use crate::record::pack::{Damage, HEADER};
 use crate::record::{AttachedRun, Status};
 use oedometer_problem::outcome::{Failure, FailureKind};
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::TERZAGHI;
 use std::collections::BTreeMap;
 use std::fs;
 
@@ -80,7 +80,7 @@ struct Bed {
 }
 
 fn case(number: usize) -> Case {
-    Case { cells: number + 2, time_factors: vec![0.1].into(), ..Case::seed(Task::Solve, SceneKind::Terzaghi) }
+    Case { cells: number + 2, time_factors: vec![0.1].into(), ..Case::seed(Task::Solve, &TERZAGHI) }
 }
 
 fn record(case: &Case, tag: usize, wall: &[f64], end: CaseEnd) -> Record {

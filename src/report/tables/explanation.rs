@@ -70,7 +70,7 @@ fn carriers_table(record: &Record, explanation: &Explanation) -> Table {
     let status = failure.map_or(String::new(), |failure| format!(" ({})", failure.name_with_step()));
     let reference = record.references.first().map_or("no reference", |used| used.name.as_str());
     let table = Table::of(
-        format!("{}: {}{status}", record.case.scene.name(), record.case.label()),
+        format!("{}: {}{status}", record.case.scene.name, record.case.label()),
         columns(
             "quantity | sample | > largest at T_v | > L1 | > L2 | > Linf | > worst at ζ | > its share \
                  | > computed | > exact",

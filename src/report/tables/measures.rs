@@ -6,7 +6,6 @@ use crate::record::Record;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
 use oedometer_problem::outcome::Failure;
-use oedometer_scenes::SceneKind;
 use std::fmt::Write;
 
 /// Errors of a record, start checks and balances, as text.
@@ -30,7 +29,7 @@ pub fn errors_table(record: &Record) -> Table {
     );
     let mut rows = Vec::new();
     for reference in &record.references {
-        let is_footing = case.scene == SceneKind::Footing;
+        let is_footing = case.scene.measures(Quantity::LoadFactor);
         for (quantity, sample, norm) in
             MEASURES.into_iter().filter(|one| (one.0 == Quantity::LoadFactor) == is_footing)
         {
@@ -49,7 +48,7 @@ pub fn errors_table(record: &Record) -> Table {
             rows.push(row);
         }
     }
-    Table::of(format!("{}: {}", case.scene.name(), case.label()), columns, rows)
+    Table::of(format!("{}: {}", case.scene.name, case.label()), columns, rows)
         .note(
             "relative L2 error over the places of `sample`, weighted with volume; settlement as \
              s/s_exact − 1",

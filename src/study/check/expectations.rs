@@ -15,7 +15,8 @@ use crate::study::reading::{Placed, Typed};
 use oedometer_convergence::{Class, ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand as Demand};
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_problem::outcome::FailureKind;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::Scene;
+use oedometer_scenes::scene::Question;
 use oedometer_soil::wording::count_of;
 use std::ops::Range;
 
@@ -31,7 +32,7 @@ const MOST_LISTED: usize = 12;
 /// What the expectations of a study are checked against.
 #[derive(Clone, Copy)]
 pub(super) struct Subject<'a> {
-    pub(super) scene: SceneKind,
+    pub(super) scene: &'static Scene,
     /// References that the runs are compared with.
     pub(super) references: &'a [ReferenceKind],
     pub(super) planned: &'a [PlannedCase],
@@ -129,10 +130,12 @@ impl Checker<'_> {
             .status
             .as_ref()
             .and_then(|word| self.word(word, "status", &names).map(|index| names[index].to_owned()));
-        if let Some(range) = table.spurious_velocity.as_ref().filter(|_| !subject.scene.is_at_rest()) {
+        if let Some(range) =
+            table.spurious_velocity.as_ref().filter(|_| subject.scene.question != Question::Rest)
+        {
             self.complain(
                 range.span(),
-                format!("the soil of the scene `{}` moves by itself", subject.scene.name()),
+                format!("the soil of the scene `{}` moves by itself", subject.scene.name),
                 "a spurious velocity is measured in the scene \"at-rest\"",
             );
         }
@@ -202,7 +205,7 @@ impl Checker<'_> {
     fn own_words_fit(
         &mut self,
         table: &Placed<ExpectTable>,
-        scene: SceneKind,
+        scene: &'static Scene,
         sample: Sample,
         own_word: Option<&str>,
     ) {
@@ -234,7 +237,7 @@ impl Checker<'_> {
             ),
             (
                 probe,
-                !is_value || !is_field || scene.has_plane_fields(),
+                !is_value || !is_field || scene.body.is_plane(),
                 "a probe is for a field of a column that is compared with no reference".to_owned(),
                 "add `reference = \"none\"`, or leave the key out",
             ),
@@ -248,7 +251,7 @@ impl Checker<'_> {
                 without_probe,
                 is_value && is_field,
                 format!("without a reference the {} is not a single number", table.quantity.name()),
-                if scene.has_plane_fields() {
+                if scene.body.is_plane() {
                     "ask for the settlement"
                 } else {
                     "add a depth, like `probe = 0.5`"
@@ -263,8 +266,8 @@ impl Checker<'_> {
             ),
             (
                 oscillation,
-                scene.has_plane_fields() && !is_measured,
-                format!("the scene `{}` measures the wiggle of the pressure at the points", scene.name()),
+                scene.body.is_plane() && !is_measured,
+                format!("the scene `{}` measures the wiggle of the pressure at the points", scene.name),
                 "leave `quantity` and `sample` out, or the oscillation",
             ),
         ] {
@@ -275,7 +278,7 @@ impl Checker<'_> {
     }
 
     /// Which cases an expectation is about.
-    fn selection(&mut self, inputs: &Inputs, scene: SceneKind) -> Selection {
+    fn selection(&mut self, inputs: &Inputs, scene: &'static Scene) -> Selection {
         let seed = Case::seed(Task::Solve, scene);
         let values = inputs.0.iter();
         Selection(

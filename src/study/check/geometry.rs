@@ -9,8 +9,9 @@ use crate::study::reading::Placed;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
-use oedometer_scenes::SceneKind;
 use oedometer_scenes::column::column_parameters;
+use oedometer_scenes::scene::{Body, Clock};
+use oedometer_scenes::{SCENES, Scene};
 use oedometer_soil::layers::{MOST_LAYERS, SoilLayer, SoilLayers};
 use oedometer_soil::wording::short;
 use std::ops::Range;
@@ -72,11 +73,11 @@ fn contents_of(table: &str) -> &'static str {
 impl Checker<'_> {
     /// The inputs of the table that the scene's geometry stands in; other tables of geometry are refused.
     pub(super) fn geometry(&mut self, file: &StudyFile, seed: &Case) -> Vec<(&'static Key, Value)> {
-        let (scene, own) = (seed.scene, seed.scene.table_of_geometry());
+        let (scene, own) = (seed.scene, seed.scene.body.table());
         let [layer, manufactured] = [&file.layer, &file.manufactured];
         let of_column = file.column.inputs.first_span();
-        let strain = file.column.strain.as_ref().map(Placed::span).filter(|_| scene.is_manufactured());
-        let on_lattice = scene.is_manufactured() || scene == SceneKind::Footing;
+        let strain = file.column.strain.as_ref().map(Placed::span).filter(|_| scene.body == Body::Square);
+        let on_lattice = !scene.takes("points");
         let of_points = file.points.inputs.first_span().filter(|_| on_lattice);
         for (table, place) in [
             ("column", of_column.or(strain)),
@@ -87,7 +88,7 @@ impl Checker<'_> {
             if let Some(place) = place.filter(|_| table != own) {
                 self.complain(
                     place,
-                    format!("the scene `{}` has no [{table}]", scene.name()),
+                    format!("the scene `{}` has no [{table}]", scene.name),
                     contents_of(own),
                 );
             }
@@ -111,39 +112,39 @@ impl Checker<'_> {
 
     /// The inputs of `[column]`, where the scene takes them.
     fn column(&mut self, inputs: &Inputs, seed: &Case) -> Vec<(&'static Key, Value)> {
-        let (scene, name) = (seed.scene, seed.scene.name());
+        let (scene, name) = (seed.scene, seed.scene.name);
         let is =
             |key: &str, wanted: fn(&TypedInput) -> bool| inputs.typed(key).is_some_and(|typed| wanted(typed));
         for (key, is_refused, message, help) in [
             (
                 "loading_time",
-                !scene.takes_loading_time(),
+                !scene.takes("loading_time"),
                 format!("the load of `{name}` acts at once"),
                 "a load that grows belongs to the scenes \"xie-leo\" and \"dynamic-column\"",
             ),
             (
                 "self_weight",
-                !scene.takes_self_weight(),
+                !scene.takes("self_weight"),
                 format!("the soil of `{name}` has no weight"),
                 "self-weight belongs to the scenes \"terzaghi\", \"xie-leo\", \"dynamic-column\" and \"at-rest\"",
             ),
             (
                 "self_weight",
                 seed.task == Task::Stability
-                    && scene.takes_self_weight()
+                    && scene.takes("self_weight")
                     && is("self_weight", |typed| matches!(typed, TypedInput::Flag(true))),
                 "a weight does not change the critical step: it is that of the weightless column".to_owned(),
                 "leave `self_weight` out of a study of stability",
             ),
             (
                 "initial_stress",
-                scene != SceneKind::YieldFront,
+                !scene.takes("initial_stress"),
                 format!("the soil of `{name}` has no stress history"),
                 "an initial stress belongs to the scene \"yield-front\"",
             ),
             (
                 "dimensions",
-                scene.needs_two_dimensions()
+                scene.body != Body::Column
                     && is("dimensions", |typed| !matches!(typed, TypedInput::Count(2))),
                 format!("`{name}` has two dimensions"),
                 "leave the key out: the plate presses across the direction in which the water flows",
@@ -175,10 +176,10 @@ impl Checker<'_> {
                 self.complain(layer.span(), message, help);
             }
         }
-        if !base.scene.takes_layers() {
+        if !base.scene.takes("soils") {
             self.complain(
                 whole,
-                format!("the soil of the scene `{}` has no layers", base.scene.name()),
+                format!("the soil of the scene `{}` has no layers", base.scene.name),
                 "layers belong to the scenes \"layered\", of small strain, and \"xie-leo\", of large",
             );
             return SoilLayers::default();
@@ -206,52 +207,54 @@ impl Checker<'_> {
     }
 
     /// Complains of a footing's inputs where there is none, and of a load where one is pushed.
-    fn footing_fits(&mut self, key: &Key, place: Range<usize>, scene: SceneKind) {
-        let is_footing = scene == SceneKind::Footing;
-        let message = || format!("the scene `{}` has no `{}`", scene.name(), key.name);
-        if is_footing && key.name == "load" {
+    fn footing_fits(&mut self, key: &Key, place: Range<usize>, scene: &'static Scene) {
+        let takes_plate = scene.takes("plate_width");
+        let message = || format!("the scene `{}` has no `{}`", scene.name, key.name);
+        if takes_plate && key.name == "load" {
             self.complain(
                 place,
                 message(),
                 "the settlement of its plate is prescribed, and the load is the result",
             );
-        } else if !is_footing && ["plate_width", "plate", "undrained"].contains(&key.name) {
+        } else if !takes_plate && ["plate_width", "plate", "undrained"].contains(&key.name) {
             self.complain(place, message(), "a plate belongs to the scene \"footing\"");
         }
     }
 
     /// Complains where a motion has no such amplitude.
-    fn amplitude_fits(&mut self, key: &Key, place: Range<usize>, scene: SceneKind) {
-        if let Some(why) = scene.refuses_input_of_motion(key.name) {
-            self.complain(place, format!("the scene `{}` has no `{}`", scene.name(), key.name), why);
+    fn amplitude_fits(&mut self, key: &Key, place: Range<usize>, scene: &'static Scene) {
+        if let Some(why) = scene.refuses_amplitude(key.name) {
+            self.complain(place, format!("the scene `{}` has no `{}`", scene.name, key.name), why);
         }
     }
 
     /// Complains where a sweep names an input of another kind of body: the width of a layer, the base of a column.
-    pub(super) fn swept_geometry(&mut self, inputs: &Inputs, scene: SceneKind) {
-        let own = scene.table_of_geometry();
+    pub(super) fn swept_geometry(&mut self, inputs: &Inputs, scene: &'static Scene) {
+        let own = scene.body.table();
         for (key, list) in &inputs.0 {
             self.amplitude_fits(key, list.span(), scene);
             self.footing_fits(key, list.span(), scene);
             let takes = |table: &str| key.tables.contains(&table);
             let is_geometry = ["column", "layer", "manufactured"].into_iter().any(takes);
-            if (scene.is_manufactured() && takes("points")) || (is_geometry && !takes(own)) {
-                let message = format!("the scene `{}` has no `{}`", scene.name(), key.name);
+            if (scene.body == Body::Square && takes("points")) || (is_geometry && !takes(own)) {
+                let message = format!("the scene `{}` has no `{}`", scene.name, key.name);
                 self.complain(list.span(), message, contents_of(own));
             }
         }
     }
 
     /// Complains of what a soil remembers where the scene's does not.
-    pub(super) fn soil_remembers(&mut self, material: &Inputs, scene: SceneKind) {
-        for (key, own) in [
-            ("reload_modulus", SceneKind::YieldFront),
-            ("preconsolidation", SceneKind::YieldFront),
-            ("undrained_strength", SceneKind::Footing),
-        ] {
-            if let Some(place) = material.span(key).filter(|_| scene != own) {
-                let message = format!("`{key}` has no effect in the scene `{}`", scene.name());
-                self.complain(place, message, format!("it belongs to the scene \"{}\"", own.name()));
+    pub(super) fn soil_remembers(&mut self, material: &Inputs, scene: &'static Scene) {
+        for key in ["reload_modulus", "preconsolidation", "undrained_strength"] {
+            if let Some(place) = material.span(key).filter(|_| !scene.takes(key)) {
+                let message = format!("`{key}` has no effect in the scene `{}`", scene.name);
+                let own =
+                    SCENES.into_iter().filter(|own| own.takes(key)).map(|own| format!("\"{}\"", own.name));
+                self.complain(
+                    place,
+                    message,
+                    format!("it belongs to the scene {}", own.collect::<Vec<_>>().join(" or ")),
+                );
             }
         }
     }
@@ -289,7 +292,7 @@ impl Checker<'_> {
             )
         } else if !seed.scene.is_loaded() {
             (
-                format!("no load acts in the scene `{}`: it cannot strain it", seed.scene.name()),
+                format!("no load acts in the scene `{}`: it cannot strain it", seed.scene.name),
                 "leave `strain` out",
             )
         } else if **typed > 0.0 && **typed < 1.0 {
@@ -312,12 +315,12 @@ impl Checker<'_> {
             self.complain(place.clone(), error.to_string(), help);
             return true;
         }
-        if case.scene == SceneKind::YieldFront && self.has_no_front(place, case) {
+        if case.scene.clock == Clock::HalfSpace && self.has_no_front(place, case) {
             return true;
         }
-        let is_loaded = case.scene.is_large_strain() && !case.scene.is_manufactured();
+        let is_loaded = case.scene.is_large_strain() && case.scene.motion.is_none();
         if is_loaded && !case.column.soils.is_empty() {
-            let kind = case.scene.references()[0].for_soil(&case.material);
+            let kind = case.scene.references[0].kind.for_soil(&case.material);
             let reference = Reference::new(kind, &column_parameters(&case.column, &case.material), &[]);
             if let Err(error) = &reference {
                 self.complain(load.clone(), error.to_string(), "see [column], [column.soils] and [material]");
@@ -433,7 +436,7 @@ impl Checker<'_> {
     /// Warns of a stiffness or a conductivity that no soil has: a number in another unit.
     pub(super) fn unlike_any_soil(&mut self, file: &StudyFile, planned: &[PlannedCase]) {
         // A manufactured motion has numbers of its own scale.
-        if planned.iter().any(|planned| planned.case.scene.is_manufactured()) {
+        if planned.iter().any(|planned| planned.case.scene.motion.is_some()) {
             return;
         }
         let soils = || planned.iter().flat_map(|planned| planned.case.soils());
@@ -466,7 +469,7 @@ impl Checker<'_> {
 
     /// Warns of a pressure projection that slows the waves that a scene is about.
     pub(super) fn projection_slows_waves(&mut self, file: &StudyFile, planned: &[PlannedCase]) {
-        let cases = planned.iter().map(|planned| &planned.case).filter(|case| case.scene.has_waves());
+        let cases = planned.iter().map(|planned| &planned.case).filter(|case| case.scene.waves);
         let shares = cases.filter_map(|case| {
             let method = case.method.built_in()?;
             let share = method.share_of_wave_speed(&case.material, case.cells);

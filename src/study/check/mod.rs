@@ -25,8 +25,9 @@ use crate::study::solver::ExternalSolver;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_problem::integrator::Formulation;
 use oedometer_problem::method::Configuration;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::Scene;
 use oedometer_scenes::column::Column;
+use oedometer_scenes::scene::LoadKind;
 use std::ops::Range;
 
 /// What a study is read for.
@@ -54,7 +55,7 @@ pub struct Study {
     /// What question it answers.
     pub summary: String,
     /// Scene.
-    pub scene: SceneKind,
+    pub scene: &'static Scene,
     /// References that its results are compared with.
     pub references: Vec<ReferenceKind>,
     /// Cases in the order of the sweeps, each once.
@@ -199,7 +200,7 @@ impl Checker<'_> {
         let (scene, task) = (*file.scene, file.task.as_deref().copied().unwrap_or_default());
         let case_seconds =
             self.positive(file.case_seconds.as_ref(), "case_seconds", "s", DEFAULT_CASE_SECONDS);
-        if let Some(typed) = file.task.as_ref().filter(|_| task == Task::Stability && scene.is_manufactured())
+        if let Some(typed) = file.task.as_ref().filter(|_| task == Task::Stability && scene.motion.is_some())
         {
             self.complain(
                 typed.span(),
@@ -218,8 +219,8 @@ impl Checker<'_> {
         base.column.soils = self.soils(&file, &base);
         let has_dates = file.output.times.is_some() || file.sweep.iter().any(|table| table.times.is_some());
         let outputs = self.outputs(&file.output.time_factors, &file.output.times);
-        let outputs = outputs
-            .unwrap_or_else(|| Outputs::at_factors(scene.default_time_factors(&base.column, &base.material)));
+        let outputs =
+            outputs.unwrap_or_else(|| Outputs::at_factors((scene.outputs)(&base.column, &base.material)));
         let references = self.references(&file.output, scene, &base.column);
         let given = self.attach_results(&file);
         if file.sweep.is_empty() && file.result.is_empty() {
@@ -241,7 +242,7 @@ impl Checker<'_> {
                 case.column.points.name_water_points(case.points_per_cell);
                 if let Some(strain) = strain {
                     case.column.load = load_of(strain, &case);
-                } else if scene == SceneKind::Footing {
+                } else if scene.load == LoadKind::Pushed {
                     // What the soil bears is what pressures are measured by.
                     case.column.load = case.material.undrained_strength;
                 }
@@ -291,7 +292,7 @@ impl Checker<'_> {
         let height = planned.first().map_or(base.column.height, |planned| planned.case.column.height);
         let is_common = planned.iter().all(|planned| planned.case.column.height == height);
         let height = is_common.then_some(height);
-        let plate_width = (scene == SceneKind::Footing).then_some(base.column.footing.width);
+        let plate_width = (scene.load == LoadKind::Pushed).then_some(base.column.footing.width);
         let subject = Subject { scene, references: &references, planned: &planned, height, plate_width };
         let expectations: Vec<SeriesExpectation> =
             file.expect.iter().filter_map(|table| self.expectation(table, &subject)).collect();
@@ -355,7 +356,9 @@ impl Checker<'_> {
         self.units_are_si(&file.material.inputs);
         self.soil_remembers(&file.material.inputs, seed.scene);
         given.extend(self.inputs("integrator", &file.integrator.inputs, &seed));
-        if seed.scene.needs_inertia() && file.integrator.inputs.typed("formulation").is_none() {
+        if !seed.scene.formulations.has(&Formulation::QuasiStatic)
+            && file.integrator.inputs.typed("formulation").is_none()
+        {
             let waves = Value::Word(Formulation::VW.name());
             given.extend(Key::named("formulation", "integrator").map(|key| (key, waves)));
         }
@@ -363,14 +366,19 @@ impl Checker<'_> {
     }
 
     /// The references that runs are compared with, in the order of the scene, whose own comes first.
-    fn references(&mut self, table: &OutputTable, scene: SceneKind, column: &Column) -> Vec<ReferenceKind> {
+    fn references(
+        &mut self,
+        table: &OutputTable,
+        scene: &'static Scene,
+        column: &Column,
+    ) -> Vec<ReferenceKind> {
         let own = scene.references_of(column);
-        let Some(list) = &table.references else { return own.to_vec() };
-        let names: Vec<&str> = scene.references().iter().map(|kind| kind.name()).collect();
+        let Some(list) = &table.references else { return own };
+        let names: Vec<&str> = scene.reference_kinds().iter().map(|kind| kind.name()).collect();
         let mut references = Vec::new();
         for typed in list.iter() {
             let Some(index) = self.word(typed, "reference", &names) else { continue };
-            let kind = scene.references()[index];
+            let kind = scene.references[index].kind;
             if references.contains(&kind) {
                 self.complain(typed.span(), format!("\"{kind}\" is listed twice"), "leave one of them out");
             } else if own.contains(&kind) {

@@ -11,6 +11,7 @@ use crate::study::file::{StudyFile, SweepTable};
 use crate::study::inputs::{One, TypedInput};
 use crate::study::reading::Placed;
 use oedometer_problem::integrator::IntegratorKind;
+use oedometer_scenes::scene::Body;
 use oedometer_soil::wording::duration;
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hasher};
@@ -237,7 +238,7 @@ impl Checker<'_> {
                     || common.given.iter().any(|(given, _)| given.name == key.name)
             });
         let Case { task, scene, .. } = *base;
-        let key = Key::named("integrator", "sweep").filter(|_| task == Task::Solve && !scene.has_waves());
+        let key = Key::named("integrator", "sweep").filter(|_| task == Task::Solve && !scene.waves);
         let Some(key) = key.filter(|_| !is_chosen && self.purpose == Purpose::Solving) else { return };
         let slowest = |sweep: &Sweep| {
             sweep.cases(base).map(|case| estimated_seconds(&complete(case))).fold(0.0, f64::max)
@@ -267,7 +268,7 @@ impl Checker<'_> {
 /// What is said of cells that do not fill the width.
 fn gap_of(case: &Case) -> String {
     let (column, size) = (&case.column, case.column.height / case.cells as f64);
-    let side = if case.scene.is_a_layer() { "length" } else { "width" };
+    let side = if case.scene.body == Body::Layer { "length" } else { "width" };
     format!("square cells of {size} m do not fill a {side} of {} m", column.extent())
 }
 
@@ -376,8 +377,8 @@ mod tests {
     use super::*;
     use crate::case::Task;
     use oedometer_problem::method::Method;
-    use oedometer_problem::time_step::TimeStepRule;
-    use oedometer_scenes::SceneKind;
+    use oedometer_problem::time_step::TimeStep;
+    use oedometer_scenes::TERZAGHI;
 
     const STEPS: [f64; 3] = [4e-6, 2e-6, 1e-6];
 
@@ -391,14 +392,14 @@ mod tests {
             keys: vec![
                 swept("method", methods.map(|method| Value::Method(method.into())).collect()),
                 swept("cells", [5, 10, 20].map(Value::Count).to_vec()),
-                swept("time_step", STEPS.map(|s| Value::TimeStep(TimeStepRule::Seconds(s))).to_vec()),
+                swept("time_step", STEPS.map(|s| Value::TimeStep(TimeStep::Seconds(s))).to_vec()),
             ],
             path: path.iter().map(|key| (*key).to_owned()).collect(),
         }
     }
 
     fn cases(sweep: &Sweep) -> Vec<Case> {
-        sweep.cases(&Case::seed(Task::Solve, SceneKind::Terzaghi)).collect()
+        sweep.cases(&Case::seed(Task::Solve, &TERZAGHI)).collect()
     }
 
     #[test]
@@ -417,7 +418,7 @@ mod tests {
         assert_eq!(tied.count(), Some(2 * 3));
         for case in cases(&tied) {
             let place = [5, 10, 20].iter().position(|cells| *cells == case.cells);
-            assert_eq!(place.map(|place| TimeStepRule::Seconds(STEPS[place])), Some(case.time_step));
+            assert_eq!(place.map(|place| TimeStep::Seconds(STEPS[place])), Some(case.time_step));
         }
     }
 

@@ -8,29 +8,14 @@ use crate::study::inputs::{Inputs, MethodTable, One, TimeStepTable, TypedInput};
 use crate::study::reading::Placed;
 use crate::study::solver::ExternalSolver;
 use oedometer_problem::method::{FULL_PROJECTION, Method, PressureIntegration, Recovery};
-use oedometer_problem::time_step::TimeStepRule;
-use oedometer_scenes::SceneKind;
+use oedometer_problem::time_step::{STEP_KINDS, StepKind, TimeStep};
+use oedometer_scenes::Scene;
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::law::Law;
 use std::ops::RangeInclusive;
 
 /// A place in the text.
 type TextSpan = std::ops::Range<usize>;
-
-/// A rule of the step size: its name in study files, what it makes of a number, and the least number with which a run
-/// comes to an end, with the reason.
-type Rule = (&'static str, fn(f64) -> TimeStepRule, f64, &'static str);
-
-const NO_ERROR_LEFT: &str = "smaller steps no longer reduce the error in time";
-
-/// The rules in the order of a table's keys.
-const RULES: [Rule; 5] = [
-    ("stable", TimeStepRule::Stable, 1e-9, NO_ERROR_LEFT),
-    ("courant", TimeStepRule::Courant, 1e-9, NO_ERROR_LEFT),
-    ("seconds", TimeStepRule::Seconds, 0.0, ""),
-    ("growth", TimeStepRule::Growth, 1e-9, "a smaller growth needs too many steps"),
-    ("tolerance", TimeStepRule::Tolerance, 1e-12, "round-off is an error of that size"),
-];
 
 /// Methods that left the program, and what does their work.
 const GONE: [(&str, &str); 2] = [("PPP-step", "PPP"), ("PPP-monotone", "PPP")];
@@ -75,7 +60,7 @@ impl Checker<'_> {
         index
     }
 
-    fn method_named(&mut self, name: &str, span: TextSpan, scene: SceneKind) -> Option<SolverName> {
+    fn method_named(&mut self, name: &str, span: TextSpan, scene: &'static Scene) -> Option<SolverName> {
         let of_study = self.solvers.iter().find(|solver| solver.name() == name).map(ExternalSolver::method);
         let Some(method) = Method::named(name).map(SolverName::Own).or(of_study) else {
             let mut names = Method::names();
@@ -92,7 +77,12 @@ impl Checker<'_> {
         self.method_fits(method, span, scene)
     }
 
-    fn method_of(&mut self, table: &MethodTable, span: TextSpan, scene: SceneKind) -> Option<SolverName> {
+    fn method_of(
+        &mut self,
+        table: &MethodTable,
+        span: TextSpan,
+        scene: &'static Scene,
+    ) -> Option<SolverName> {
         let MethodTable { basis, strain, pressure, memory, quadrature, .. } = *table;
         let recovery = match &table.recovery {
             Some(word) => **word,
@@ -120,7 +110,7 @@ impl Checker<'_> {
     }
 
     /// An input of a contender, where the scene allows it.
-    pub(super) fn entered(&mut self, value: Value, span: TextSpan, scene: SceneKind) -> Option<Value> {
+    pub(super) fn entered(&mut self, value: Value, span: TextSpan, scene: &'static Scene) -> Option<Value> {
         let Value::Method(method) = value else { return Some(value) };
         self.method_fits(method, span, scene).map(Value::Method)
     }
@@ -148,11 +138,16 @@ impl Checker<'_> {
     }
 
     /// The method, where its scene allows it.
-    fn method_fits(&mut self, method: SolverName, span: TextSpan, scene: SceneKind) -> Option<SolverName> {
+    fn method_fits(
+        &mut self,
+        method: SolverName,
+        span: TextSpan,
+        scene: &'static Scene,
+    ) -> Option<SolverName> {
         let configuration = method.built_in().and_then(|method| method.configuration);
         let refusal = if let Some(why) = configuration.and_then(|kind| scene.refuses_configuration(kind)) {
             (why, "take \"updated\" or \"total\", or leave the key out")
-        } else if method.built_in().is_none() && scene.is_manufactured() {
+        } else if method.built_in().is_none() && scene.motion.is_some() {
             (
                 "an external solver does not receive the body forces and the source of a manufactured motion",
                 "take a method of this program",
@@ -172,11 +167,11 @@ impl Checker<'_> {
     }
 
     /// The one rule that a table names.
-    fn time_step(&mut self, table: &TimeStepTable, span: TextSpan) -> Option<TimeStepRule> {
+    fn time_step(&mut self, table: &TimeStepTable, span: TextSpan) -> Option<TimeStep> {
         let typed = [&table.stable, &table.courant, &table.seconds, &table.growth, &table.tolerance];
-        let given = RULES.iter().zip(typed).filter_map(|(rule, typed)| Some((rule, typed.as_ref()?)));
+        let given = STEP_KINDS.iter().zip(typed).filter_map(|(kind, typed)| Some((kind, typed.as_ref()?)));
         let given: Vec<_> = given.collect();
-        let [((name, rule, least, why), value)] = given.as_slice() else {
+        let [(StepKind { word, make, least, why }, value)] = given.as_slice() else {
             self.complain(
                 span,
                 format!("a time step by {} rules", given.len()),
@@ -187,12 +182,12 @@ impl Checker<'_> {
         };
         let number = ***value;
         let (message, help) = if number > 0.0 && number < *least {
-            (format!("a time step by `{name} = {number:e}`"), format!("{why}: at least {least:e}"))
-        } else if *name == "growth" && number.is_finite() && number > 1.0 {
+            (format!("a time step by `{word} = {number:e}`"), format!("{why}: at least {least:e}"))
+        } else if *word == "growth" && number.is_finite() && number > 1.0 {
             let message = format!("a step of {number} times the elapsed time");
             (message, "a growth is a fraction: 0.05 is 5 %, and 1 is the maximum".to_owned())
         } else if number.is_finite() && number > 0.0 {
-            return Some(rule(number));
+            return Some(make(number));
         } else {
             (format!("a time step of {number}"), "it must be positive and finite".to_owned())
         };
@@ -201,15 +196,15 @@ impl Checker<'_> {
     }
 
     /// Whether a scene takes a word where it is a law or a mean of the conductivity.
-    fn word_fits(&mut self, word: &str, span: TextSpan, key: &Key, scene: SceneKind) -> bool {
+    fn word_fits(&mut self, word: &str, span: TextSpan, key: &Key, scene: &'static Scene) -> bool {
         let refused = |law: Law| scene.refuses_law(law);
         let law = Law::named(word).filter(|_| key.name == "law");
         let is_chord = key.name == "conductivity_mean" && word == ConductivityMean::Chord.name();
         if let Some(why) = law.and_then(refused) {
             let fit = Law::ALL.into_iter().filter(|law| refused(*law).is_none());
             let names: Vec<&str> = fit.map(Law::name).collect();
-            self.complain(span, why, format!("the scene `{}` takes {}", scene.name(), names.join(", ")));
-        } else if is_chord && scene.is_manufactured() {
+            self.complain(span, why, format!("the scene `{}` takes {}", scene.name, names.join(", ")));
+        } else if is_chord && scene.motion.is_some() {
             self.complain(
                 span,
                 "the chord mean belongs to a flux out of a drained surface, and a manufactured motion has none",

@@ -40,7 +40,7 @@ fn state(places: &[[f64; 2]], displacement: &[f64], curve: Option<f64>) -> Sampl
 #[test]
 fn a_settlement_is_that_of_the_curve_or_of_the_sample_at_the_surface_under_the_crest() {
     use oedometer_case::Task;
-    use oedometer_scenes::SceneKind::{CosineLayer, Mandel, Terzaghi};
+    use oedometer_scenes::{COSINE_LAYER, MANDEL, TERZAGHI};
     let settled = |scene, state: SampledState| {
         let settlement = snapshot_of(&Case::seed(Task::Solve, scene), Sample::Points, &state).settlement;
         (!settlement.is_nan()).then_some(settlement)
@@ -48,13 +48,13 @@ fn a_settlement_is_that_of_the_curve_or_of_the_sample_at_the_surface_under_the_c
     let mut samples = [([0.0, 0.0], 0.0), ([1.0, 0.0], -3.0), ([0.5, 0.0], -1.0)];
     for _ in 0..3 {
         let (places, up): (Vec<[f64; 2]>, Vec<f64>) = samples.into_iter().unzip();
-        for scene in [Terzaghi, CosineLayer] {
+        for scene in [&TERZAGHI, &COSINE_LAYER] {
             assert_eq!(settled(scene, state(&places, &up, None)), Some(3.0), "{scene:?} {places:?}");
             assert_eq!(settled(scene, state(&places, &up, Some(-7.0))), Some(7.0));
             assert_eq!(settled(scene, state(&places, &[], None)), None, "without displacements");
         }
-        assert_eq!(settled(Mandel, state(&places, &up, None)), None, "a slab's plate presses across");
-        assert_eq!(settled(Mandel, state(&places, &up, Some(-7.0))), Some(7.0));
+        assert_eq!(settled(&MANDEL, state(&places, &up, None)), None, "a slab's plate presses across");
+        assert_eq!(settled(&MANDEL, state(&places, &up, Some(-7.0))), Some(7.0));
         samples.rotate_left(1);
     }
     // Up to the round-off of single precision, and no further; in a column wherever it stands across.
@@ -64,15 +64,15 @@ fn a_settlement_is_that_of_the_curve_or_of_the_sample_at_the_surface_under_the_c
         ([1.0, 0.9 * RIM], Some(3.0), Some(3.0)),
         ([1.0, 0.5], Some(3.0), None),
     ] {
-        assert_eq!(settled(Terzaghi, state(&[place], &[-3.0], None)), of_column, "{place:?}");
-        assert_eq!(settled(CosineLayer, state(&[place], &[-3.0], None)), of_layer, "{place:?}");
+        assert_eq!(settled(&TERZAGHI, state(&[place], &[-3.0], None)), of_column, "{place:?}");
+        assert_eq!(settled(&COSINE_LAYER, state(&[place], &[-3.0], None)), of_layer, "{place:?}");
     }
 }
 
 #[test]
 fn samples_go_where_their_kind_is_looked_for_with_every_field_of_their_own() {
     use oedometer_case::Task;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::{COSINE_LAYER, TERZAGHI};
     let given = SampledState {
         time: 8.0,
         volume: vec![2.0],
@@ -84,8 +84,8 @@ fn samples_go_where_their_kind_is_looked_for_with_every_field_of_their_own() {
     for (sample, wanted) in
         [(Sample::Points, [1, 0, 0]), (Sample::Centres, [0, 1, 0]), (Sample::Nodes, [0, 0, 1])]
     {
-        let column = snapshot_of(&Case::seed(Task::Solve, SceneKind::Terzaghi), sample, &given);
-        let layer = snapshot_of(&Case::seed(Task::Solve, SceneKind::CosineLayer), sample, &given);
+        let column = snapshot_of(&Case::seed(Task::Solve, &TERZAGHI), sample, &given);
+        let layer = snapshot_of(&Case::seed(Task::Solve, &COSINE_LAYER), sample, &given);
         for (found, is_plane) in [(column, false), (layer, true)] {
             let all = [&found.points, &found.centres, &found.nodes];
             assert_eq!(all.map(|samples| samples.initial_height.len()), wanted, "{sample:?}");
@@ -108,7 +108,7 @@ mod runs {
     use oedometer_case::Task;
     use oedometer_case::outcome::Status;
     use oedometer_problem::outcome::FailureKind;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::TERZAGHI;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     /// A case on two cells with one output.
@@ -117,7 +117,7 @@ mod runs {
             method: solver.method(),
             cells: 2,
             time_factors: vec![0.1].into(),
-            ..Case::seed(Task::Solve, SceneKind::Terzaghi)
+            ..Case::seed(Task::Solve, &TERZAGHI)
         }
         .as_its_solver_knows()
     }

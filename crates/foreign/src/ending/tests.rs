@@ -2,10 +2,10 @@
 
 use super::*;
 use oedometer_case::Task;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::{COSINE_LAYER, TERZAGHI};
 
 fn case() -> Case {
-    Case { cells: 10, time_factors: vec![0.05, 0.1].into(), ..Case::seed(Task::Solve, SceneKind::Terzaghi) }
+    Case { cells: 10, time_factors: vec![0.05, 0.1].into(), ..Case::seed(Task::Solve, &TERZAGHI) }
 }
 
 /// States at the outputs with samples at heights.
@@ -46,11 +46,8 @@ fn a_missing_half_every_other_row_and_a_hole_are_told_with_their_heights() {
 
 #[test]
 fn a_stretch_of_a_layers_length_that_is_missing_is_told_with_its_distances() {
-    let case = Case {
-        cells: 10,
-        time_factors: vec![0.05, 0.1].into(),
-        ..Case::seed(Task::Solve, SceneKind::CosineLayer)
-    };
+    let case =
+        Case { cells: 10, time_factors: vec![0.05, 0.1].into(), ..Case::seed(Task::Solve, &COSINE_LAYER) };
     let nodes = lattice(11, 0.0, 0.1);
     let of = |distances: &[f64]| {
         let places = distances.iter().flat_map(|x| nodes.iter().map(move |y| (*x, *y)));
@@ -71,7 +68,7 @@ fn a_stretch_of_a_layers_length_that_is_missing_is_told_with_its_distances() {
 
 #[test]
 fn the_length_of_a_layer_is_its_own_and_not_its_height() {
-    let seed = Case::seed(Task::Solve, SceneKind::CosineLayer);
+    let seed = Case::seed(Task::Solve, &COSINE_LAYER);
     for (length, reached, told) in [
         (0.5, 6, None),
         (0.5, 4, Some("the distances 0.3 m and 0.5 m")),

@@ -28,7 +28,7 @@ impl SolvedBody {
     pub fn of(case: &Case) -> Self {
         Self {
             height: case.column.height,
-            length: case.scene.has_plane_fields().then_some(case.column.extent()),
+            length: case.scene.body.is_plane().then_some(case.column.extent()),
             seconds_per_time_factor: case.seconds_per_time_factor(),
         }
     }

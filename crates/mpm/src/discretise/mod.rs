@@ -16,9 +16,9 @@ use crate::state::grid::Grid;
 use crate::state::nodes::{PlateOnTop, Support};
 use crate::state::points::Points;
 use oedometer_problem::critical_step::CriticalStep;
-use oedometer_problem::method::{Configuration, Quadrature};
+use oedometer_problem::method::Quadrature;
 use oedometer_problem::outcome::Outcome;
-use oedometer_problem::problem::{Faces, Load, MakeForcing, Problem, Start, StartError, Strain, Weight};
+use oedometer_problem::problem::{Faces, Load, MakeForcing, Problem, Start, StartError, Weight};
 use oedometer_problem::settings::ExplicitSettings;
 use oedometer_soil::law::History;
 use oedometer_soil::tensor::Tensor;
@@ -157,10 +157,7 @@ pub fn discretise<const D: usize>(problem: &Problem) -> Result<Discrete<D>, Star
             layers => layers.iter().map(|layer| layer.soil(soil)).collect(),
         },
         method: *method,
-        configuration: method.configuration_in(match problem.strain {
-            Strain::Small => Configuration::Frozen,
-            Strain::Large => Configuration::Updated,
-        }),
+        configuration: method.configuration_in(problem.strain.configuration()),
         load,
         load_shape,
         driven_plate,
@@ -270,8 +267,8 @@ mod tests {
     use crate::tests::column_problem;
     use oedometer_problem::arrangement::Arrangement;
     use oedometer_problem::method::Method;
-    use oedometer_scenes::SceneKind;
     use oedometer_scenes::column::Column;
+    use oedometer_scenes::{SCENES, YIELD_FRONT};
     use oedometer_soil::material::Material;
 
     #[test]
@@ -280,8 +277,8 @@ mod tests {
         for number in 1..=300_usize {
             let height = 0.05 + 0.01051 * number as f64;
             let (offset, jitter) = ([0.0, 0.3, 0.5, -0.5][number % 4], [0.0, 0.5, 0.3][number % 3]);
-            for scene in SceneKind::ALL.into_iter().filter(|scene| !scene.is_manufactured()) {
-                let mut column = Column { height, ..scene.default_column() };
+            for scene in SCENES.into_iter().filter(|scene| scene.motion.is_none()) {
+                let mut column = Column { height, ..(scene.column)() };
                 column = column.with_extent(height);
                 column.points = Arrangement { offset, jitter, ..Arrangement::default() };
                 let cells = 3 + number % 5;
@@ -296,16 +293,16 @@ mod tests {
                         problem.points.position.iter().all(|place| problem.grid.holds(place))
                     }
                 };
-                assert!(is_inside, "{} {height} {offset} {jitter}", scene.name());
+                assert!(is_inside, "{} {height} {offset} {jitter}", scene.name);
             }
         }
     }
 
     #[test]
     fn a_soil_yields_at_its_preconsolidation_less_the_initial_stress() {
-        let scene = SceneKind::YieldFront;
-        let soil = Material { law: scene.default_law(), preconsolidation: 5.0, ..Material::default() };
-        let column = Column { initial_stress: 2.0, load: 10.0, ..scene.default_column() };
+        let scene = &YIELD_FRONT;
+        let soil = Material { law: (scene.soil)().law, preconsolidation: 5.0, ..Material::default() };
+        let column = Column { initial_stress: 2.0, load: 10.0, ..(scene.column)() };
         let method = Method::named("GIMP").expect("known");
         let problem = column_problem::<1>(scene, &column, &soil, method, 3, 2).expect("a column");
         let yields: Vec<f64> = problem.points.history.iter().map(|history| history.yield_stress).collect();

@@ -168,7 +168,7 @@ mod tests {
     use crate::kernel::body::Body;
     use crate::tests::column_problem;
     use oedometer_problem::method::{Configuration, Method};
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::AT_REST;
     use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
     use proptest::prelude::*;
@@ -266,14 +266,14 @@ mod tests {
         let method =
             Method { configuration: Some(configuration), ..Method::named(method).expect("a known method") };
         let soil = Material::default();
-        let problem = column_problem::<D>(SceneKind::AtRest, column, &soil, method, 10, 2).expect("a column");
+        let problem = column_problem::<D>(&AT_REST, column, &soil, method, 10, 2).expect("a column");
         Body::new(problem).unbalanced_force()
     }
 
     #[test]
     fn a_column_of_jittered_points_rests_under_its_weight() {
         for (jitter, filling) in [(0.1, 1.0), (0.3, 1.0), (0.3, 0.7)] {
-            let mut column = SceneKind::AtRest.default_column();
+            let mut column = (AT_REST.column)();
             column.points.jitter = jitter;
             column.points.filling = filling;
             let extent = column.points.cell_size(column.height, 10);

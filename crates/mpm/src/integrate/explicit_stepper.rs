@@ -14,7 +14,7 @@ use crate::state::points::Points;
 use oedometer_problem::method::Configuration;
 use oedometer_problem::settings::ExplicitSettings;
 use oedometer_problem::snapshot::Snapshot;
-use oedometer_problem::time_step::TimeStepRule;
+use oedometer_problem::time_step::TimeStep;
 use oedometer_problem::wave_speeds;
 
 /// Steps between two looks.
@@ -112,7 +112,7 @@ impl<const D: usize> ExplicitStepper<D> {
             initial_height: plan.initial_height,
             initial_settlement: body.settlement(plan.initial_height),
             settings: schedule.settings,
-            step_follows: !matches!(schedule.rule, TimeStepRule::Seconds(_)),
+            step_follows: !matches!(schedule.time_step, TimeStep::Seconds(_)),
             rhythm: Rhythm::default(),
             kick: f64::NAN,
             load: GrowingLoad::new(body, plan.loading_time),

@@ -165,23 +165,23 @@ mod tests {
     use super::*;
     use crate::tests::column_problem;
     use oedometer_problem::method::Method;
-    use oedometer_scenes::SceneKind;
     use oedometer_scenes::column::Column;
+    use oedometer_scenes::{COSINE_LAYER, DYNAMIC_COLUMN, Scene, TERZAGHI};
     use oedometer_soil::material::Material;
 
-    fn bounds_of(scene: SceneKind, column: &Column, soil: &Material) -> PhysicalBounds {
+    fn bounds_of(scene: &'static Scene, column: &Column, soil: &Material) -> PhysicalBounds {
         let method = Method::named("GC-SRI-patch").expect("the paper's method");
-        if scene.needs_two_dimensions() {
-            PhysicalBounds::new(&column_problem::<2>(scene, column, soil, method, 4, 2).expect("a layer"))
-        } else {
+        if scene.body == oedometer_scenes::scene::Body::Column {
             PhysicalBounds::new(&column_problem::<1>(scene, column, soil, method, 4, 2).expect("a column"))
+        } else {
+            PhysicalBounds::new(&column_problem::<2>(scene, column, soil, method, 4, 2).expect("a layer"))
         }
     }
 
     #[test]
     fn a_column_is_bounded_by_what_consolidation_and_waves_can_reach() {
         let soil = Material::default();
-        let bounds = bounds_of(SceneKind::Terzaghi, &Column::default(), &soil);
+        let bounds = bounds_of(&TERZAGHI, &Column::default(), &soil);
         let final_settlement = 1.0 / soil.oedometric_modulus();
         for (settlement, is_within) in
             [(0.0, true), (2.0, true), (-0.9, true), (3.1, false), (-1.1, false), (f64::NAN, false)]
@@ -203,7 +203,7 @@ mod tests {
     fn a_layer_without_compressibility_still_settles_by_shear() {
         let soil = Material { poissons_ratio: 0.4999, ..Material::default() };
         let layer = Column { height: 10.0, ..Column::layer() };
-        let bounds = bounds_of(SceneKind::CosineLayer, &layer, &soil);
+        let bounds = bounds_of(&COSINE_LAYER, &layer, &soil);
         // A half-space under a cosine of a metre: 2 (1 − ν²) q L/(π E).
         let half_space = 2.0 * (1.0 - 0.4999_f64.powi(2)) / (std::f64::consts::PI * soil.youngs_modulus);
         assert!(bounds.settlement_scale > half_space && bounds.settlement_scale < 1.1 * half_space);
@@ -216,7 +216,7 @@ mod tests {
     #[test]
     fn the_bound_on_unbalanced_forces_allows_the_release_of_water_and_the_first_waves() {
         let soil = Material { hydraulic_conductivity: 1e-6, ..Material::default() };
-        let bounds = bounds_of(SceneKind::Terzaghi, &Column { load: 50.0, ..Column::default() }, &soil);
+        let bounds = bounds_of(&TERZAGHI, &Column { load: 50.0, ..Column::default() }, &soil);
         // Of 50 Pa on five cells a hundredth, and half a millisecond for a wave.
         for (force, time, is_within) in
             [(150.0, 5e-4, true), (1.5, 1.0, true), (2.5, 1.0, false), (f64::NAN, 1.0, false)]
@@ -226,7 +226,7 @@ mod tests {
         let waves = bounds.widened_by_start(&[], 50.0);
         assert!(waves.left_by_force(150.0, 1.0).is_none() && waves.left_by_force(250.0, 1.0).is_some());
         let growing = Column { loading_time: 1.0, ..Column::default() };
-        let growing = bounds_of(SceneKind::DynamicColumn, &growing, &soil);
+        let growing = bounds_of(&DYNAMIC_COLUMN, &growing, &soil);
         assert!(growing.left_by_force(1e9, 1.0).is_none());
     }
 }

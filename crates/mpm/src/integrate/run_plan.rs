@@ -9,7 +9,7 @@ use crate::kernel::body::{Discrete, DrivenPlate};
 use crate::state::points::Points;
 use oedometer_problem::integrator::StepBound;
 use oedometer_problem::outcome::StepSizes;
-use oedometer_problem::time_step::{StepLimit, StepScales, TimeStepRule};
+use oedometer_problem::time_step::{StepScales, Steps, TimeStep};
 use oedometer_problem::wave_speeds;
 use oedometer_soil::material::Material;
 
@@ -21,8 +21,8 @@ const LARGEST_SHARE: f64 = 0.8;
 pub struct Plan<'a> {
     /// Outputs, step rule and integrator.
     pub schedule: &'a Schedule,
-    /// Limit of the step sizes.
-    pub limit: StepLimit,
+    /// Its steps.
+    pub steps: Steps,
     /// A mode that grows too far within the run under any explicit step: steps cannot be shares of a limit then.
     pub growing: Option<GrowingMode>,
     /// Step sizes as far as they are known before the run.
@@ -76,8 +76,8 @@ impl<'a> Plan<'a> {
             wave_speed: problem.most_of_soils(|soil| wave_speeds::fastest_wave_speed(soil, soil.porosity)),
             consolidation: problem.most_of_soils(Material::coefficient_of_consolidation),
         };
-        let target = schedule.rule.first(&scales);
-        let prediction = prediction.filter(|_| matches!(schedule.rule, TimeStepRule::Stable(_)));
+        let target = schedule.time_step.first(&scales);
+        let prediction = prediction.filter(|_| matches!(schedule.time_step, TimeStep::Stable(_)));
         let grows_far = |mode: &GrowingMode| !mode.stays_small_for(end);
         let growing = prediction.as_ref().and_then(|prediction| prediction.growing).filter(grows_far);
         let growth =
@@ -89,7 +89,7 @@ impl<'a> Plan<'a> {
             StepBound::AllWaves | StepBound::Accuracy => f64::INFINITY,
         };
         Self {
-            limit: schedule.rule.limit(&scales, most, &schedule.outputs),
+            steps: schedule.time_step.steps(&scales, &schedule.outputs, most),
             growing,
             sizes,
             points: problem.points.len() + problem.water.as_ref().map_or(0, Points::len),
@@ -128,7 +128,7 @@ mod tests {
     use oedometer_problem::integrator::IntegratorKind;
     use oedometer_problem::method::Method;
     use oedometer_problem::settings::ExplicitSettings;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::LAYERED;
     use oedometer_scenes::column::Column;
     use oedometer_soil::layers::{SoilLayer, SoilLayers};
 
@@ -148,12 +148,11 @@ mod tests {
         let (soft, stiff) = (layer(1e6), layer(4e9));
         for layers in [[soft, stiff], [stiff, soft]] {
             let column = Column { soils: SoilLayers::from_slice(&layers).expect("two"), ..Column::default() };
-            let problem =
-                column_problem::<1>(SceneKind::Layered, &column, &soil, method, 4, 2).expect("a column");
+            let problem = column_problem::<1>(&LAYERED, &column, &soil, method, 4, 2).expect("a column");
             let schedule = Schedule {
                 outputs: vec![1.0],
                 history: Vec::new(),
-                rule: TimeStepRule::Courant(0.5),
+                time_step: TimeStep::Courant(0.5),
                 settings: ExplicitSettings::default(),
                 kernel: Kernel::Fastest,
                 integrator: IntegratorKind::Explicit,

@@ -1,6 +1,6 @@
 //! The schedule of a run: step rule, outputs, and what to keep.
 
-use oedometer_problem::time_step::TimeStepRule;
+use oedometer_problem::time_step::TimeStep;
 
 use crate::time_limit::TimeLimit;
 use oedometer_problem::integrator::{Formulation, IntegratorKind};
@@ -24,7 +24,7 @@ pub struct Schedule {
     /// Times at which the settlement is noted, s, ascending.
     pub history: Vec<f64>,
     /// Step size.
-    pub rule: TimeStepRule,
+    pub time_step: TimeStep,
     /// Choices of the explicit integrator.
     pub settings: ExplicitSettings,
     /// Kernel of the explicit step.

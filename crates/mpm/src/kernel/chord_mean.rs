@@ -74,7 +74,7 @@ mod tests {
     use crate::state::grid::integer_part;
     use crate::tests::column_problem;
     use oedometer_problem::method::Method;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::XIE_LEO;
     use oedometer_scenes::column::Column;
     use oedometer_soil::conductivity::ConductivityMean;
     use oedometer_soil::law::Law;
@@ -94,8 +94,7 @@ mod tests {
         let width = 1.0 / CELLS as f64;
         let column = Column { load: LOAD, dimensions: D, ..Column::default() }.with_extent(width);
         let method = Method::named("TL-GIMP-SRI-patch").expect("a method");
-        let problem =
-            column_problem::<D>(SceneKind::XieLeo, &column, &soil, method, CELLS, 3).expect("a column");
+        let problem = column_problem::<D>(&XIE_LEO, &column, &soil, method, CELLS, 3).expect("a column");
         let mut body = Body::new(problem);
         for point in 0..body.points.len() {
             let height = body.points.initial_position[point][D - 1];

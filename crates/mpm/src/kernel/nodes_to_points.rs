@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "the innermost loops of the step")]
 
 use crate::kernel::body::Body;
-use crate::kernel::points_to_nodes::{Given, ToNodes, scaled};
+use crate::kernel::points_to_nodes::{Given, Gives, Momenta, Nothing, ToNodes, scaled};
 use crate::operators::stencil::{Stencils, with_stencils};
 use crate::state::points::Points;
 use crate::wide::wide;
@@ -50,19 +50,15 @@ impl<const D: usize> Body<D> {
     pub(crate) fn advance_points(&mut self, motion: Motion, maps_back: bool) {
         let basis = std::mem::take(&mut self.operators.basis);
         with_stencils!(&basis, stencils => if maps_back {
-            wide!(self.advance_points_by::<_, true>(stencils, motion));
+            wide!(self.advance_points_by::<_, Momenta>(stencils, motion));
         } else {
-            wide!(self.advance_points_by::<_, false>(stencils, motion));
+            wide!(self.advance_points_by::<_, Nothing>(stencils, motion));
         });
         self.operators.basis = basis;
     }
 
     #[inline(always)]
-    fn advance_points_by<const W: usize, const BACK: bool>(
-        &mut self,
-        stencils: &Stencils<D, W>,
-        motion: Motion,
-    ) {
+    fn advance_points_by<const W: usize, G: Gives>(&mut self, stencils: &Stencils<D, W>, motion: Motion) {
         let (stride, moves) = (*self.grid.node_stride(), self.configuration.moves_points());
         let (nodes, carrier) = (&mut self.nodes, self.operators.strain.carrier());
         let (nodal_motion, nodal_velocity) = (&nodes.motion[..], &nodes.solid_velocity[..]);
@@ -81,7 +77,7 @@ impl<const D: usize> Body<D> {
             [position, displacement, solid_velocity].map(|field| &mut field[..count]);
         let [grain_volume, initial_volume, volume_ratio] =
             [grain_volume, initial_volume, volume_ratio].map(|field| &field[..count]);
-        let mut sums = ToNodes::<D, W, false, BACK, false>::new(&mut nodes.sums, stride);
+        let mut sums = ToNodes::<D, W, G>::new(&mut nodes.sums, stride);
         let stencils = stencils.slices(count);
         for point in 0..count {
             let stencil = stencils.of_point(point);
@@ -102,7 +98,7 @@ impl<const D: usize> Body<D> {
             if moves {
                 motion.carry(&mut position[point], &carrying);
             }
-            if BACK {
+            if G::MOMENTA {
                 let grains = grain_volume[point];
                 let volumes = [grains, initial_volume[point] * volume_ratio[point] - grains];
                 sums.add(stencil, &Given { momenta: scaled(&momenta, volumes), ..Given::NOTHING });

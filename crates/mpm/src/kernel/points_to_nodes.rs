@@ -16,44 +16,45 @@ use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::material::Material;
 use oedometer_soil::tensor::{Tensor, Vector, product_with_transpose};
 use std::hint::black_box;
+use std::marker::PhantomData;
 
 impl<const D: usize> Body<D> {
     /// Sums masses, volumes and drag of the points to the nodes.
     pub fn map_masses(&mut self) {
-        self.sum_points::<true, false, false>();
+        self.sum_points::<Masses>();
         self.take_masses();
     }
 
     /// Maps the velocities of both phases from the points to the nodes, weighted with mass.
     pub fn map_velocities(&mut self) {
-        self.sum_points::<false, true, false>();
+        self.sum_points::<Momenta>();
         self.take_velocities();
     }
 
     /// Forces on the mixture and on the water from the points' stresses (weak form, drained
     /// surface natural), and from what acts from outside.
     pub fn map_forces(&mut self) {
-        self.sum_points::<false, false, true>();
+        self.sum_points::<Forces>();
         self.take_forces();
     }
 
     /// [`map_masses`](Self::map_masses) and [`map_forces`](Self::map_forces) in one pass.
     pub(crate) fn map_masses_and_forces(&mut self) {
-        self.sum_points::<true, false, true>();
+        self.sum_points::<(Masses, Forces)>();
         self.take_masses();
         self.take_forces();
     }
 
     /// Sums masses, momenta and forces of the points by the shape functions that stand.
-    pub(crate) fn sum_points<const MASSES: bool, const MOMENTA: bool, const FORCES: bool>(&mut self) {
+    pub(crate) fn sum_points<G: Gives>(&mut self) {
         let giving = Giving::new(&self.points, &self.soils, self.is_pushed_forward);
         let (stride, sums) = (*self.grid.node_stride(), &mut self.nodes.sums);
         with_stencils!(&self.operators.basis, stencils => wide!({
-            let mut sums = ToNodes::<D, _, MASSES, MOMENTA, FORCES>::new(sums, stride);
+            let mut sums = ToNodes::<D, _, G>::new(sums, stride);
             let stencils = stencils.slices(giving.count());
             for point in 0..giving.count() {
-                let shares = giving.shares::<1, MASSES>(point);
-                let given = giving.given::<1, MASSES, MOMENTA, FORCES>(point, 0, &shares);
+                let shares = giving.shares::<1, G>(point);
+                let given = giving.given::<1, G>(point, 0, &shares);
                 sums.add(stencils.of_point(point), &given);
             }
             sums.close();
@@ -67,7 +68,7 @@ impl<const D: usize> Body<D> {
             self.cells.locate(&self.grid, &self.points, &self.soils);
             build_corners(&mut basis, &self.grid, &self.cells.place, &domains.half_edges);
             self.operators.basis = basis;
-            self.sum_points::<true, true, true>();
+            self.sum_points::<All>();
             return;
         }
         with_shape!(self.method.basis, &mut basis, S, stencils => {
@@ -140,6 +141,57 @@ impl<const D: usize> Body<D> {
     }
 }
 
+/// What the points of a pass give.
+pub(crate) trait Gives {
+    /// Volumes of grains and pores, and drag.
+    const MASSES: bool;
+    /// Volumes times velocities.
+    const MOMENTA: bool;
+    /// Stresses times volumes.
+    const FORCES: bool;
+}
+
+/// Nothing.
+pub(crate) struct Nothing;
+/// Masses alone.
+pub(crate) struct Masses;
+/// Momenta alone.
+pub(crate) struct Momenta;
+/// Forces alone.
+pub(crate) struct Forces;
+/// Everything.
+pub(crate) type All = ((Masses, Momenta), Forces);
+
+impl Gives for Nothing {
+    const MASSES: bool = false;
+    const MOMENTA: bool = false;
+    const FORCES: bool = false;
+}
+
+impl Gives for Masses {
+    const MASSES: bool = true;
+    const MOMENTA: bool = false;
+    const FORCES: bool = false;
+}
+
+impl Gives for Momenta {
+    const MASSES: bool = false;
+    const MOMENTA: bool = true;
+    const FORCES: bool = false;
+}
+
+impl Gives for Forces {
+    const MASSES: bool = false;
+    const MOMENTA: bool = false;
+    const FORCES: bool = true;
+}
+
+impl<A: Gives, B: Gives> Gives for (A, B) {
+    const MASSES: bool = A::MASSES || B::MASSES;
+    const MOMENTA: bool = A::MOMENTA || B::MOMENTA;
+    const FORCES: bool = A::FORCES || B::FORCES;
+}
+
 /// Points whose shape functions are built, and what they give summed.
 struct Building<'a, const D: usize, const W: usize> {
     giving: Giving<'a, D>,
@@ -149,7 +201,7 @@ struct Building<'a, const D: usize, const W: usize> {
     half_lengths: &'a [Vector<D>],
     cells: Locating<'a, D>,
     blocks: (&'a mut [usize], &'a mut [[Line<W>; D]]),
-    sums: ToNodes<'a, D, W, true, true, true>,
+    sums: ToNodes<'a, D, W, All>,
 }
 
 impl<const D: usize, const W: usize> Building<'_, D, W> {
@@ -157,14 +209,14 @@ impl<const D: usize, const W: usize> Building<'_, D, W> {
     /// the sums are loops over them.
     #[inline(always)]
     fn build_and_add<const N: usize, S: ShapeFunction<W>>(&mut self, first: usize) {
-        let shares = self.giving.shares::<N, true>(first);
+        let shares = self.giving.shares::<N, All>(first);
         let (positions, volumes) = (some_of(self.positions, first), [&shares.grains, &shares.pores]);
         let (cells, places) = self.cells.locate::<N>(self.grid, first, positions, volumes);
         let domains = [&places, some_of(self.half_lengths, first), &cells];
         let (lowest, lines) = (some_mut(self.blocks.0, first), some_mut(self.blocks.1, first));
         build_blocks::<D, W, N, S>(self.grid, self.support, domains, lowest, lines);
         for p in 0..N {
-            let given = self.giving.given::<N, true, true, true>(first, p, &shares);
+            let given = self.giving.given::<N, All>(first, p, &shares);
             self.sums.add(Stencil::of_block(&lowest[p], &lines[p]), &given);
         }
     }
@@ -232,7 +284,7 @@ impl<'a, const D: usize> Giving<'a, D> {
 
     /// Volumes and drag of `N` neighbours of one soil, from one on.
     #[inline(always)]
-    fn shares<const N: usize, const MASSES: bool>(&self, first: usize) -> Shares<N> {
+    fn shares<const N: usize, G: Gives>(&self, first: usize) -> Shares<N> {
         let (ratios, soil) = (some_of::<_, N>(self.volume_ratio, first), usize::from(self.soil[first]));
         let mut shares = Shares {
             volumes: *some_of(self.initial_volume, first),
@@ -246,7 +298,7 @@ impl<'a, const D: usize> Giving<'a, D> {
             // n V = V − (1 − n_0) V_0
             shares.pores[p] = shares.volumes[p] - shares.grains[p];
         }
-        if MASSES {
+        if G::MASSES {
             let (soil, is_layered) = (&self.soils[soil], self.soils.len() > 1);
             let mut resisting = shares.pores;
             if is_layered {
@@ -265,22 +317,17 @@ impl<'a, const D: usize> Giving<'a, D> {
 
     /// What a point gives of masses, momenta and forces, the one of a place among neighbours from a first one on.
     #[inline(always)]
-    fn given<const N: usize, const MASSES: bool, const MOMENTA: bool, const FORCES: bool>(
-        &self,
-        first: usize,
-        p: usize,
-        shares: &Shares<N>,
-    ) -> Given<D> {
+    fn given<const N: usize, G: Gives>(&self, first: usize, p: usize, shares: &Shares<N>) -> Given<D> {
         let (mut given, point) = (Given::NOTHING, first + p);
         let (grains, pores) = (shares.grains[p], shares.pores[p]);
-        if MASSES {
+        if G::MASSES {
             given.masses = [grains, pores, shares.drags[p], shares.storage[p]];
         }
-        if MOMENTA {
+        if G::MOMENTA {
             let water = self.water_velocity.get(point).unwrap_or(&[0.0; D]);
             given.momenta = scaled(&[self.solid_velocity[point], *water], [grains, pores]);
         }
-        if FORCES {
+        if G::FORCES {
             let inverse = self.inverse_deformation.map(|inverse| &inverse[point]);
             given.stresses = stresses_of(
                 shares.volumes[p] * self.stressed_share[point],
@@ -352,14 +399,7 @@ fn stresses_of<const D: usize>(
 ///
 /// On a line neighbours give to the same few nodes. What they give is summed in registers for as long as the nodes stay
 /// the same: a sum in memory would have to be stored and loaded again for every point.
-pub(crate) struct ToNodes<
-    'a,
-    const D: usize,
-    const W: usize,
-    const MASSES: bool,
-    const MOMENTA: bool,
-    const FORCES: bool,
-> {
+pub(crate) struct ToNodes<'a, const D: usize, const W: usize, G> {
     stride: [usize; D],
     masses: &'a mut [[[f64; 4]; 1]],
     momenta: &'a mut [[Vector<D>; 2]],
@@ -367,6 +407,7 @@ pub(crate) struct ToNodes<
     /// The lowest of the nodes that the last points of a line gave to, and what each of them got.
     first: usize,
     line: [Share<D>; W],
+    gives: PhantomData<G>,
 }
 
 /// What a node of a line gets.
@@ -381,20 +422,18 @@ impl<const D: usize> Share<D> {
     const NOTHING: Self = Self { masses: [0.0; 4], momenta: [[0.0; D]; 2], forces: [[0.0; D]; 2] };
 }
 
-impl<'a, const D: usize, const W: usize, const MASSES: bool, const MOMENTA: bool, const FORCES: bool>
-    ToNodes<'a, D, W, MASSES, MOMENTA, FORCES>
-{
+impl<'a, const D: usize, const W: usize, G: Gives> ToNodes<'a, D, W, G> {
     /// Nothing is given yet.
     #[inline(always)]
     pub fn new(sums: &'a mut NodalSums<D>, stride: [usize; D]) -> Self {
         let count = sums.masses.len();
-        if MASSES {
+        if G::MASSES {
             sums.masses.fill([[0.0; 4]]);
         }
-        if MOMENTA {
+        if G::MOMENTA {
             sums.momenta.fill([[0.0; D]; 2]);
         }
-        if FORCES {
+        if G::FORCES {
             sums.forces.fill([[0.0; D]; 2]);
         }
         Self {
@@ -405,6 +444,7 @@ impl<'a, const D: usize, const W: usize, const MASSES: bool, const MOMENTA: bool
             forces: &mut sums.forces[..count],
             first: 0,
             line: [Share::NOTHING; W],
+            gives: PhantomData,
         }
     }
 
@@ -420,13 +460,13 @@ impl<'a, const D: usize, const W: usize, const MASSES: bool, const MOMENTA: bool
                     self.add_on_line(run, given);
                     return;
                 }
-                if MASSES {
+                if G::MASSES {
                     run.add_values(&[given.masses], self.masses);
                 }
-                if MOMENTA {
+                if G::MOMENTA {
                     run.add_values(&given.momenta, self.momenta);
                 }
-                if FORCES {
+                if G::FORCES {
                     run.add_gradients(&given.stresses, self.forces);
                 }
             },
@@ -441,17 +481,17 @@ impl<'a, const D: usize, const W: usize, const MASSES: bool, const MOMENTA: bool
         }
         for k in 0..W {
             let (share, value, gradient) = (&mut self.line[k], run.values[k], run.gradients[k]);
-            if MASSES {
+            if G::MASSES {
                 for i in 0..4 {
                     share.masses[i] += value * given.masses[i];
                 }
             }
             for phase in 0..2 {
                 for d in 0..D {
-                    if MOMENTA {
+                    if G::MOMENTA {
                         share.momenta[phase][d] += value * given.momenta[phase][d];
                     }
-                    if FORCES {
+                    if G::FORCES {
                         share.forces[phase][d] += gradient * given.stresses[d][phase][d];
                     }
                 }
@@ -466,7 +506,7 @@ impl<'a, const D: usize, const W: usize, const MASSES: bool, const MOMENTA: bool
             return;
         }
         // Indices, and not iterators: those of two slices at once cost more than the sums.
-        if MASSES {
+        if G::MASSES {
             let masses = &mut self.masses[self.first..][..W];
             for k in 0..W {
                 for i in 0..4 {
@@ -474,7 +514,7 @@ impl<'a, const D: usize, const W: usize, const MASSES: bool, const MOMENTA: bool
                 }
             }
         }
-        if MOMENTA {
+        if G::MOMENTA {
             let momenta = &mut self.momenta[self.first..][..W];
             for k in 0..W {
                 for phase in 0..2 {
@@ -484,7 +524,7 @@ impl<'a, const D: usize, const W: usize, const MASSES: bool, const MOMENTA: bool
                 }
             }
         }
-        if FORCES {
+        if G::FORCES {
             let forces = &mut self.forces[self.first..][..W];
             for k in 0..W {
                 for phase in 0..2 {
@@ -499,11 +539,12 @@ impl<'a, const D: usize, const W: usize, const MASSES: bool, const MOMENTA: bool
 
 #[cfg(test)]
 mod tests {
+    use super::All;
     use crate::kernel::body::Body;
     use crate::operators::basis::Shapes;
     use crate::tests::column_problem;
     use oedometer_problem::method::{Configuration, Method};
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::XIE_LEO;
     use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
 
@@ -511,7 +552,7 @@ mod tests {
         let method = Method::named(name).expect("a known method");
         let method = Method { configuration: Some(Configuration::Updated), ..method };
         let (column, soil) = (Column { dimensions: D, ..Column::default() }, Material::default());
-        let problem = column_problem::<D>(SceneKind::XieLeo, &column, &soil, method, 5, 3).expect("a column");
+        let problem = column_problem::<D>(&XIE_LEO, &column, &soil, method, 5, 3).expect("a column");
         let mut body = Body::new(problem);
         for point in 0..body.points.len() {
             let share = (1.3 * point as f64).sin();
@@ -528,7 +569,7 @@ mod tests {
         let places = [&alone.cells.place[..], &alone.points.half_length[..]];
         let support = alone.support();
         alone.method.basis.build(&mut alone.operators.basis, &alone.grid, &support, places);
-        alone.sum_points::<true, true, true>();
+        alone.sum_points::<All>();
         assert_eq!(body.cells, alone.cells, "{name}");
         assert_eq!(body.operators.basis, alone.operators.basis, "{name}");
         assert_eq!(body.nodes.sums, alone.nodes.sums, "{name}");

@@ -126,8 +126,8 @@ mod tests {
     use super::*;
     use crate::tests::column_problem;
     use oedometer_problem::method::Method;
-    use oedometer_scenes::SceneKind;
     use oedometer_scenes::column::Column;
+    use oedometer_scenes::{COSINE_LAYER, LAYERED};
     use oedometer_soil::layers::{SoilLayer, SoilLayers};
     use oedometer_soil::material::Material;
 
@@ -136,8 +136,7 @@ mod tests {
 
     fn layer(name: &str) -> Body<2> {
         let (column, method) = (Column::layer(), Method::named(name).expect("a known method"));
-        let problem =
-            column_problem::<2>(SceneKind::CosineLayer, &column, &Material::default(), method, 4, 2);
+        let problem = column_problem::<2>(&COSINE_LAYER, &column, &Material::default(), method, 4, 2);
         Body::new(problem.expect("the seed layer"))
     }
 
@@ -220,7 +219,7 @@ mod tests {
         let layers = [layer(0.5, 5e6, 2e6, 0.25), layer(0.5, 2e9, 1e6, 0.4)];
         let column = Column { soils: SoilLayers::from_slice(&layers).expect("two"), ..Column::default() };
         let method = Method::named("PPP").expect("a known method");
-        let problem = column_problem::<1>(SceneKind::Layered, &column, &Material::default(), method, 4, 2);
+        let problem = column_problem::<1>(&LAYERED, &column, &Material::default(), method, 4, 2);
         let body = Body::new(problem.expect("a column"));
         let storage = |row: usize| {
             let node = body.grid.flat_node(&[2 + row]);

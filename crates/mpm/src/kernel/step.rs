@@ -6,6 +6,7 @@
 use crate::drag::{NodalBalance, NodalDrag};
 use crate::kernel::body::Body;
 use crate::kernel::nodes_to_points::Motion;
+use crate::kernel::points_to_nodes::{All, Forces};
 use oedometer_problem::settings::Drag;
 use oedometer_problem::settings::ExplicitSettings;
 
@@ -82,14 +83,14 @@ impl<const D: usize> Body<D> {
             if !settings.mapping_back {
                 self.map_velocities();
             }
-            self.sum_points::<false, false, true>();
+            self.sum_points::<Forces>();
             return;
         }
         if self.configuration.moves_points() {
             self.follow_moved_points();
         } else {
             self.follow_places();
-            self.sum_points::<true, true, true>();
+            self.sum_points::<All>();
         }
         self.take_masses();
         self.take_velocities();

@@ -8,7 +8,7 @@ use oedometer_problem::outcome::{
     Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes,
 };
 use oedometer_problem::snapshot::Snapshot;
-use oedometer_problem::time_step::{StepLimit, steps_for};
+use oedometer_problem::time_step::{Steps, steps_for};
 
 /// Steps after which deforming points are given a new step size: the pores at the drained end
 /// close within a hundred.
@@ -52,7 +52,7 @@ impl<'a> Driver<'a> {
             time: 0.0,
             sizes: plan.sizes,
             counters: Counters { points: plan.points, nodes: plan.nodes, ..Counters::default() },
-            expected: plan.limit.expected_steps(end),
+            expected: plan.steps.expected_steps(end),
             adaptive_step: plan.sizes.target,
             rejected_start: None,
             stepper,
@@ -97,8 +97,8 @@ impl<'a> Driver<'a> {
     fn output_at(&mut self, output: f64) -> Result<Snapshot, StepFailure> {
         self.ask_to_go_on()?;
         while output - self.time > 1e-9 * output {
-            match self.plan.limit {
-                StepLimit::Tolerance { tolerance, .. } => self.adapt_step(output, tolerance)?,
+            match self.plan.steps {
+                Steps::Tolerance { tolerance, .. } => self.adapt_step(output, tolerance)?,
                 limit => self.take_row(&self.next_row(limit, output))?,
             }
         }
@@ -115,11 +115,11 @@ impl<'a> Driver<'a> {
     }
 
     /// The next steps of one size towards `output`.
-    fn next_row(&self, limit: StepLimit, output: f64) -> EqualSteps {
+    fn next_row(&self, limit: Steps, output: f64) -> EqualSteps {
         match self.stepper.step_reduction() {
             None => limit.row(self.time, output),
             Some(reduction) => {
-                let row = StepLimit::Constant(self.sizes.target * reduction).row(self.time, output);
+                let row = Steps::Constant(self.sizes.target * reduction).row(self.time, output);
                 EqualSteps { count: row.count.min(STEP_RENEWAL), ..row }
             }
         }

@@ -12,7 +12,7 @@ use oedometer_problem::critical_step::{CriticalStep, OBSERVED_STEPS, Probe, SHAR
 use oedometer_problem::integrator::{Formulation, IntegratorKind};
 use oedometer_problem::outcome::{Failure, FailureKind, RunStatus};
 use oedometer_problem::settings::ExplicitSettings;
-use oedometer_problem::time_step::TimeStepRule;
+use oedometer_problem::time_step::TimeStep;
 use oedometer_problem::wave_speeds;
 
 /// Cells up to which the prediction is for the whole column; longer ones are shortened in their middle.
@@ -158,7 +158,7 @@ fn leaves<const D: usize>(
     let schedule = Schedule {
         outputs: vec![steps as f64 * step],
         history: Vec::new(),
-        rule: TimeStepRule::Seconds(step),
+        time_step: TimeStep::Seconds(step),
         settings: *settings,
         kernel: Kernel::Fastest,
         integrator: IntegratorKind::Explicit,
@@ -187,7 +187,7 @@ mod tests {
     use super::*;
     use crate::tests::column_problem;
     use oedometer_problem::method::Method;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::TERZAGHI;
     use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
 
@@ -196,8 +196,7 @@ mod tests {
         let settings = ExplicitSettings::default();
         let method = Method::named("GIMP-SRI-patch").expect("a known method");
         let (column, soil) = (Column::default(), Material::default());
-        let problem =
-            column_problem::<1>(SceneKind::Terzaghi, &column, &soil, method, 4, 2).expect("a column");
+        let problem = column_problem::<1>(&TERZAGHI, &column, &soil, method, 4, 2).expect("a column");
         let observed_limit = |steps: [f64; 2]| {
             let probes = steps.map(|step| {
                 let (steps, failure) =

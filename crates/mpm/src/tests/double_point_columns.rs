@@ -5,7 +5,7 @@ use crate::kernel::body::Body;
 use crate::tests::column_problem;
 use oedometer_problem::arrangement::Arrangement;
 use oedometer_problem::method::Method;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::XIE_LEO;
 use oedometer_scenes::column::Column;
 use oedometer_soil::law::Law;
 use oedometer_soil::material::Material;
@@ -23,7 +23,7 @@ pub(crate) fn moving_column<const D: usize>(
     let soil = Material { law: Law::LogLinear, ..*soil };
     let method = Method::named(method).expect("a known method");
     let mut problem =
-        column_problem::<D>(SceneKind::XieLeo, &column, &soil, method, 5, of_skeleton).expect("a column");
+        column_problem::<D>(&XIE_LEO, &column, &soil, method, 5, of_skeleton).expect("a column");
     let lattice = problem.water.take().expect("water points");
     let gradient = problem.initial_gradient;
     DoublePoint::new(Body::new(problem), &lattice, &gradient, false)

@@ -9,7 +9,7 @@ use crate::wide::in_narrow_registers;
 use oedometer_problem::method::{Configuration, Method};
 use oedometer_problem::settings::{Drag, ExplicitSettings};
 use oedometer_problem::wave_speeds;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::XIE_LEO;
 use oedometer_scenes::column::Column;
 use oedometer_soil::law::Law;
 use oedometer_soil::material::Material;
@@ -37,8 +37,8 @@ fn squeezed<const D: usize>(name: &str, points_per_cell: usize, law: Law) -> Dis
     let method = Method { configuration: Some(Configuration::Updated), ..method };
     let soil = Material { law, porosity: 0.6, ..Material::default() };
     let column = Column { load: 8e5, dimensions: D, ..Column::default() };
-    let mut problem = column_problem::<D>(SceneKind::XieLeo, &column, &soil, method, 8, points_per_cell)
-        .expect("the column");
+    let mut problem =
+        column_problem::<D>(&XIE_LEO, &column, &soil, method, 8, points_per_cell).expect("the column");
     // Each point goes its own way, so that neighbours in a register differ.
     for (point, velocity) in problem.points.solid_velocity.iter_mut().enumerate() {
         velocity[D - 1] -= 10.0 * (0.5 + (point as f64).cos());

@@ -11,16 +11,16 @@ use oedometer_problem::method::Method;
 use oedometer_problem::outcome::{FailureKind, RunStatus};
 use oedometer_problem::settings::Scheme;
 use oedometer_problem::settings::{Drag, ExplicitSettings};
-use oedometer_problem::time_step::TimeStepRule;
-use oedometer_scenes::SceneKind;
+use oedometer_problem::time_step::TimeStep;
 use oedometer_scenes::column::Column;
+use oedometer_scenes::{LAYERED, SINGLE_MODE};
 use oedometer_soil::layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
 
 fn problem(method: &str, cells: usize, per_cell: usize) -> Discrete<1> {
     let method = Method::named(method).expect("a known method");
     let (column, soil) = (Column::default(), Material::default());
-    column_problem(SceneKind::SingleMode, &column, &soil, method, cells, per_cell).expect("the seed column")
+    column_problem(&SINGLE_MODE, &column, &soil, method, cells, per_cell).expect("the seed column")
 }
 
 /// A column of two soils of two porosities, whose interface cuts a cell.
@@ -30,7 +30,7 @@ fn layered_problem(method: &str, cells: usize, per_cell: usize) -> Discrete<1> {
     let upper = SoilLayer { thickness: 0.55, hydraulic_conductivity: Some(1e-3), ..SoilLayer::default() };
     let soils = SoilLayers::from_slice(&[lower, upper]).expect("few layers");
     let (column, soil) = (Column { soils, ..Column::default() }, Material::default());
-    column_problem(SceneKind::Layered, &column, &soil, method, cells, per_cell).expect("a column of layers")
+    column_problem(&LAYERED, &column, &soil, method, cells, per_cell).expect("a column of layers")
 }
 
 fn schedule(kernel: Kernel, settings: ExplicitSettings, end: f64) -> Schedule {
@@ -38,7 +38,7 @@ fn schedule(kernel: Kernel, settings: ExplicitSettings, end: f64) -> Schedule {
     Schedule {
         outputs: vec![0.0, 0.4 * end, end],
         history,
-        rule: TimeStepRule::Stable(0.6),
+        time_step: TimeStep::Stable(0.6),
         settings,
         kernel,
         integrator: IntegratorKind::Explicit,
@@ -91,7 +91,7 @@ fn a_step_beyond_the_limit_ends_with_a_name_and_below_it_runs() {
             for mapping_back in [true, false] {
                 let settings = ExplicitSettings { mapping_back, ..ExplicitSettings::default() };
                 let mut schedule = schedule(Kernel::Fastest, settings, 0.3);
-                schedule.rule = TimeStepRule::Stable(share);
+                schedule.time_step = TimeStep::Stable(share);
                 let outcome = run(problem(name, 8, 2), &schedule);
                 match outcome.status {
                     RunStatus::Ok => assert!(stable, "{name} {share} {mapping_back}"),
@@ -139,7 +139,7 @@ fn a_step_that_makes_energy_is_ended_before_its_pressures_are_wrong() {
         plan.outputs = (1..=400).map(|output| 20.0 * share * critical * f64::from(output)).collect();
         let sound = run(problem(name, 8, 2), &plan);
         assert_eq!(sound.status, RunStatus::Ok);
-        plan.rule = TimeStepRule::Stable(share);
+        plan.time_step = TimeStep::Stable(share);
         let grown = run(problem(name, 8, 2), &plan);
         let RunStatus::Failed(failure) = grown.status else { panic!("{name} {share} went on to its end") };
         assert_eq!(failure.kind, FailureKind::Unstable);

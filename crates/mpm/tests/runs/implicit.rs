@@ -14,9 +14,9 @@ use oedometer_problem::integrator::{Formulation, IntegratorKind};
 use oedometer_problem::method::{Configuration, Method};
 use oedometer_problem::outcome::{FailureKind, Outcome, RunStatus};
 use oedometer_problem::settings::{Drag, ExplicitSettings};
-use oedometer_problem::time_step::TimeStepRule;
-use oedometer_scenes::SceneKind;
+use oedometer_problem::time_step::TimeStep;
 use oedometer_scenes::column::Column;
+use oedometer_scenes::{COSINE_LAYER, SINGLE_MODE, TERZAGHI, XIE_LEO};
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::law::Law;
@@ -26,28 +26,22 @@ const METHODS: [&str; 5] = ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI
 
 fn seed(method: &str, soil: &Material, cells: usize) -> Discrete<1> {
     let method = Method::named(method).expect("a known method");
-    column_problem(SceneKind::Terzaghi, &Column::default(), soil, method, cells, 2)
-        .expect("a possible column")
+    column_problem(&TERZAGHI, &Column::default(), soil, method, cells, 2).expect("a possible column")
 }
 
 fn large_strain(method: &str, soil: &Material, cells: usize) -> Discrete<1> {
     let method = Method::named(method).expect("a known method");
     let column = Column { load: 2e5, ..Column::default() };
-    column_problem(SceneKind::XieLeo, &column, soil, method, cells, 4).expect("a possible column")
+    column_problem(&XIE_LEO, &column, soil, method, cells, 4).expect("a possible column")
 }
 
-fn schedule(
-    soil: &Material,
-    integrator: IntegratorKind,
-    rule: TimeStepRule,
-    time_factors: &[f64],
-) -> Schedule {
+fn schedule(soil: &Material, integrator: IntegratorKind, rule: TimeStep, time_factors: &[f64]) -> Schedule {
     let per_factor = 1.0 / soil.coefficient_of_consolidation();
     Schedule {
         critical_step: None,
         outputs: time_factors.iter().map(|factor| factor * per_factor).collect(),
         history: Vec::new(),
-        rule,
+        time_step: rule,
         settings: ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() },
         kernel: Kernel::Fastest,
         formulation: integrator.default_formulation(),
@@ -61,7 +55,7 @@ fn schedule(
 fn solve(
     problem: impl Into<Discretised>,
     integrator: IntegratorKind,
-    rule: TimeStepRule,
+    rule: TimeStep,
     time_factors: &[f64],
 ) -> Outcome {
     let problem = problem.into();
@@ -75,7 +69,7 @@ fn solve(
 }
 
 fn implicit(problem: Discrete<1>, growth: f64, time_factors: &[f64]) -> Outcome {
-    solve(problem, IntegratorKind::Implicit, TimeStepRule::Growth(growth), time_factors)
+    solve(problem, IntegratorKind::Implicit, TimeStep::Growth(growth), time_factors)
 }
 
 /// Largest difference of two fields over the largest value of the second.
@@ -89,9 +83,8 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 fn small_steps_end_where_the_explicit_integrator_does() {
     for method in METHODS {
         let problem = || seed(method, &Material::default(), 5);
-        let explicit = solve(problem(), IntegratorKind::Explicit, TimeStepRule::Stable(0.8), &[0.05])
-            .snapshots
-            .remove(0);
+        let explicit =
+            solve(problem(), IntegratorKind::Explicit, TimeStep::Stable(0.8), &[0.05]).snapshots.remove(0);
         let fine = implicit(problem(), 0.004, &[0.05]).snapshots.remove(0);
         for (a, b) in [
             (&fine.points.pressure, &explicit.points.pressure),
@@ -161,7 +154,7 @@ fn the_chord_mean_ends_where_the_explicit_integrator_does_and_keeps_a_fresh_tang
         let more = fine.counters.iterations as f64 / paper.counters.iterations as f64;
         assert!(more < 1.3, "{method}: {more} times the iterations of the paper's mean");
         if method.starts_with("CE") {
-            let rule = TimeStepRule::Stable(0.8);
+            let rule = TimeStep::Stable(0.8);
             let explicit = solve(problem(), IntegratorKind::Explicit, rule, &[0.01]);
             // What is left is the inertia.
             let off = difference(pressure, &explicit.snapshots[0].points.pressure);
@@ -180,9 +173,8 @@ fn large_strain_ends_where_the_explicit_integrator_does() {
     ] {
         let soil = Material { law, continuity, ..Material::default() };
         let problem = || large_strain(method, &soil, 5);
-        let explicit = solve(problem(), IntegratorKind::Explicit, TimeStepRule::Stable(0.8), &[0.05])
-            .snapshots
-            .remove(0);
+        let explicit =
+            solve(problem(), IntegratorKind::Explicit, TimeStep::Stable(0.8), &[0.05]).snapshots.remove(0);
         let fine = implicit(problem(), 0.01, &[0.05]).snapshots.remove(0);
         // Points that move take the weights with them step by step, and so to first order only.
         let tolerance = if method.starts_with("TL") { 3e-4 } else { 2e-3 };
@@ -226,7 +218,7 @@ fn small_steps_do_not_make_updated_b_bar_grow() {
         Column { load: strain * soil.oedometric_modulus(), loading_time: 16.35, ..Column::default() };
     for method in ["GC-Bbar-patch", "GIMP-Bbar-patch"] {
         let of_method = Method::named(method).expect("a known method");
-        let problem = || column_problem::<1>(SceneKind::XieLeo, &column, &soil, of_method, 32, 4);
+        let problem = || column_problem::<1>(&XIE_LEO, &column, &soil, of_method, 32, 4);
         let settlement = implicit(problem().expect("a column"), 0.01, &[2.0]).snapshots[0].settlement;
         // Half of the height, but for U(1.9) = 0.993.
         assert!((settlement / 0.5 - 0.993).abs() < 3e-3, "{method}: {settlement}");
@@ -266,7 +258,7 @@ fn closing_pores_end_an_implicit_run_by_name() {
     let mut problem = large_strain("TL-GIMP-SRI-patch", &xie_leo_soil(), 5);
     problem.load *= 4.0;
     let schedule =
-        schedule(&problem.material, IntegratorKind::Implicit, TimeStepRule::Growth(0.05), &[0.001, 2.0]);
+        schedule(&problem.material, IntegratorKind::Implicit, TimeStep::Growth(0.05), &[0.001, 2.0]);
     let outcome = run(problem, &schedule);
     let RunStatus::Failed(failure) = outcome.status else { panic!("not failed") };
     assert_eq!(failure.kind, FailureKind::PoresClosed, "{}", failure.reason);
@@ -279,8 +271,7 @@ fn inertia_makes_the_waves_that_the_explicit_integrator_makes() {
     let problem = || {
         let method = Method::named("GIMP-SRI-patch").expect("a known method");
         let (column, soil) = (Column::default(), Material::default());
-        let mut problem =
-            column_problem(SceneKind::SingleMode, &column, &soil, method, 10, 2).expect("possible");
+        let mut problem = column_problem(&SINGLE_MODE, &column, &soil, method, 10, 2).expect("possible");
         problem.points.effective_stress.fill([[0.0]]);
         problem
     };
@@ -291,7 +282,7 @@ fn inertia_makes_the_waves_that_the_explicit_integrator_makes() {
         assert_eq!(outcome.status, RunStatus::Ok);
         outcome.snapshots.into_iter().flat_map(|snapshot| snapshot.points.pressure).collect::<Vec<_>>()
     };
-    let step = TimeStepRule::Seconds(2e-6);
+    let step = TimeStep::Seconds(2e-6);
     let explicit = pressure(IntegratorKind::Explicit, Formulation::VW, step);
     let inertial = pressure(IntegratorKind::Implicit, Formulation::VW, step);
     assert!(difference(&inertial, &explicit) < 0.05, "{}", difference(&inertial, &explicit));
@@ -308,8 +299,8 @@ fn domains_that_grow_over_a_face_renumber_the_unknowns() {
     let method = Method { configuration: Some(Configuration::Updated), ..named("GIMP-SRI-patch") };
     let layer = Column { load: 1e5, ..Column::layer() };
     let soil = Material::default();
-    let problem = column_problem::<2>(SceneKind::CosineLayer, &layer, &soil, method, 4, 2);
-    let schedule = schedule(&soil, IntegratorKind::Implicit, TimeStepRule::Seconds(0.1635), &[0.1]);
+    let problem = column_problem::<2>(&COSINE_LAYER, &layer, &soil, method, 4, 2);
+    let schedule = schedule(&soil, IntegratorKind::Implicit, TimeStep::Seconds(0.1635), &[0.1]);
     let outcome = run(problem.expect("a possible layer"), &schedule);
     assert!(outcome.counters.steps > 10, "{:?}", outcome.status);
 }
@@ -369,7 +360,7 @@ fn a_plane_column_at_large_strain_is_the_column() {
     plane.configuration = line.configuration;
     plane.soils.clone_from(&line.soils);
     plane.initial_gradient = [[0.0, 0.0], [0.0, strain]];
-    let rule = TimeStepRule::Growth(0.2);
+    let rule = TimeStep::Growth(0.2);
     let line = solve(line, IntegratorKind::Implicit, rule, &[0.1]).snapshots.remove(0);
     let plane = solve(plane, IntegratorKind::Implicit, rule, &[0.1]).snapshots.remove(0);
     let ratio = line.settlement / plane.settlement;
@@ -385,10 +376,10 @@ fn domains_that_reach_through_the_base_leave_a_plane_column_equal_to_the_line() 
     // through it at the sites of a node that nothing holds but a round-off.
     let column = Column { load: 2e5, dimensions: 2, ..Column::default() }.with_extent(0.5);
     let method = named("GC-SRI-patch");
-    let plane = column_problem::<2>(SceneKind::XieLeo, &column, &xie_leo_soil(), method, 4, 2);
+    let plane = column_problem::<2>(&XIE_LEO, &column, &xie_leo_soil(), method, 4, 2);
     let line = Column { dimensions: 1, ..column };
-    let line = column_problem::<1>(SceneKind::XieLeo, &line, &xie_leo_soil(), method, 4, 2);
-    let rule = TimeStepRule::Growth(0.2);
+    let line = column_problem::<1>(&XIE_LEO, &line, &xie_leo_soil(), method, 4, 2);
+    let rule = TimeStep::Growth(0.2);
     let line = solve(line.expect("a column"), IntegratorKind::Implicit, rule, &[0.02]).snapshots.remove(0);
     let plane = solve(plane.expect("a column"), IntegratorKind::Implicit, rule, &[0.02]).snapshots.remove(0);
     let ratio = line.settlement / plane.settlement;
@@ -404,8 +395,8 @@ fn loaded_plane(
 ) -> Outcome {
     let column = Column { load, dimensions: 2, ..Column::default() }.with_extent(width);
     let soil = Material { water_bulk_modulus, ..xie_leo_soil() };
-    let plane = column_problem::<2>(SceneKind::XieLeo, &column, &soil, named(method), cells, points);
-    let schedule = schedule(&soil, IntegratorKind::Implicit, TimeStepRule::Growth(0.1), &[time_factor]);
+    let plane = column_problem::<2>(&XIE_LEO, &column, &soil, named(method), cells, points);
+    let schedule = schedule(&soil, IntegratorKind::Implicit, TimeStep::Growth(0.1), &[time_factor]);
     run(plane.expect("a column"), &schedule)
 }
 
@@ -434,9 +425,8 @@ fn full_integration_in_the_plane_equals_the_column_until_it_fails() {
     for method in ["MPM", "GIMP"] {
         let plane = loaded_plane(method, [2e5, 0.5, 1e7], [4, 2], 0.02);
         assert_eq!(plane.status, RunStatus::Ok, "{method}");
-        let line = column_problem::<1>(SceneKind::XieLeo, &column, &soil, named(method), 4, 2);
-        let line =
-            solve(line.expect("a column"), IntegratorKind::Implicit, TimeStepRule::Growth(0.1), &[0.02]);
+        let line = column_problem::<1>(&XIE_LEO, &column, &soil, named(method), 4, 2);
+        let line = solve(line.expect("a column"), IntegratorKind::Implicit, TimeStep::Growth(0.1), &[0.02]);
         let ratio = line.snapshots[0].settlement / plane.snapshots[0].settlement;
         assert!((ratio - 1.0).abs() < 1e-9, "{method}: {ratio}");
     }
@@ -445,7 +435,7 @@ fn full_integration_in_the_plane_equals_the_column_until_it_fails() {
 #[test]
 fn a_plane_column_is_the_column() {
     for method in METHODS {
-        let rule = TimeStepRule::Growth(0.1);
+        let rule = TimeStep::Growth(0.1);
         let line = solve(seed(method, &Material::default(), 6), IntegratorKind::Implicit, rule, &[0.1]);
         let plane = solve(plane_column(method, 3, 6), IntegratorKind::Implicit, rule, &[0.1]);
         assert_eq!(line.counters.steps, plane.counters.steps);
@@ -466,7 +456,7 @@ fn the_error_in_time_is_within_the_tolerance() {
         (large_strain("TL-GC-SRI-patch", &xie_leo_soil(), 6), 1e-7),
     ] {
         let pressure = |tolerance| {
-            let rule = TimeStepRule::Tolerance(tolerance);
+            let rule = TimeStep::Tolerance(tolerance);
             let outcome = solve(problem.clone(), IntegratorKind::Implicit, rule, &[0.05, 0.3, 1.0]);
             let fields = outcome.snapshots.into_iter().map(|snapshot| snapshot.points.pressure);
             (fields.collect::<Vec<_>>().concat(), outcome.counters)
@@ -490,7 +480,7 @@ fn the_semi_implicit_integrator_is_stable_up_to_its_limit_and_of_first_order() {
     let problem = || seed("GIMP-SRI-patch", &Material::default(), 8);
     let exact = implicit(problem(), 0.002, &[0.1]).snapshots.remove(0).points.pressure;
     let error = |share| {
-        let rule = TimeStepRule::Stable(share);
+        let rule = TimeStep::Stable(share);
         let outcome = solve(problem(), IntegratorKind::SemiImplicit, rule, &[0.1]);
         difference(&outcome.snapshots[0].points.pressure, &exact)
     };
@@ -499,7 +489,7 @@ fn the_semi_implicit_integrator_is_stable_up_to_its_limit_and_of_first_order() {
     assert!((order - 1.0).abs() < 0.2, "order {order}, {errors:?}");
     assert!(error(0.95) < 0.2);
     let schedule =
-        schedule(&Material::default(), IntegratorKind::SemiImplicit, TimeStepRule::Stable(1.3), &[200.0]);
+        schedule(&Material::default(), IntegratorKind::SemiImplicit, TimeStep::Stable(1.3), &[200.0]);
     let beyond = run(problem(), &schedule);
     let RunStatus::Failed(failure) = beyond.status else { panic!("stable beyond its limit") };
     assert_eq!(failure.kind, FailureKind::Unstable);
@@ -519,8 +509,8 @@ fn the_limit_of_semi_implicit_steps_holds_wherever_the_points_lie() {
             let ends = [0.95, 1.6].map(|share| {
                 let column = Column { points, ..Column::default() };
                 let soil = Material::default();
-                let problem = column_problem::<1>(SceneKind::Terzaghi, &column, &soil, method, 12, 2);
-                let rule = TimeStepRule::Stable(share);
+                let problem = column_problem::<1>(&TERZAGHI, &column, &soil, method, 12, 2);
+                let rule = TimeStep::Stable(share);
                 let schedule = schedule(&soil, IntegratorKind::SemiImplicit, rule, &[0.05]);
                 run(problem.expect("a column"), &schedule).status
             });
@@ -537,7 +527,7 @@ fn the_limit_of_semi_implicit_steps_holds_wherever_the_points_lie() {
 fn the_semi_implicit_integrator_moves_points_too() {
     let problem = || large_strain("GIMP-SRI-patch", &xie_leo_soil(), 6);
     let fine = implicit(problem(), 0.02, &[0.1]).snapshots.remove(0);
-    let semi_implicit = solve(problem(), IntegratorKind::SemiImplicit, TimeStepRule::Stable(0.02), &[0.1]);
+    let semi_implicit = solve(problem(), IntegratorKind::SemiImplicit, TimeStep::Stable(0.02), &[0.1]);
     assert!(difference(&semi_implicit.snapshots[0].points.pressure, &fine.points.pressure) < 0.02);
     assert!((semi_implicit.snapshots[0].settlement / fine.settlement - 1.0).abs() < 0.02);
 }
@@ -549,7 +539,7 @@ fn strains_near_round_off_converge_without_smaller_steps() {
     let settlement = |load: f64| {
         let column = Column { load, ..Column::default() };
         let method = Method::named("TL-GIMP-SRI-patch").expect("a known method");
-        let problem = column_problem(SceneKind::XieLeo, &column, &soil, method, 8, 2).expect("a column");
+        let problem = column_problem(&XIE_LEO, &column, &soil, method, 8, 2).expect("a column");
         let outcome = implicit(problem, 0.05, &[0.1]);
         assert_eq!(outcome.counters.rejected_steps, 0, "under {load} Pa");
         outcome.snapshots[0].settlement / load
@@ -564,7 +554,7 @@ fn the_two_surfaces_differ_by_what_the_composite_gradient_gives_the_last_half_le
     let column = Column { load: 1.0, ..Column::default() };
     let settled = |method: &str| {
         let method = Method::named(method).expect("a known method");
-        let problem = column_problem(SceneKind::XieLeo, &column, &soil, method, 8, 2).expect("a column");
+        let problem = column_problem(&XIE_LEO, &column, &soil, method, 8, 2).expect("a column");
         implicit(problem, 0.05, &[0.1]).snapshots.remove(0)
     };
     // Where nothing moves it is the displacement of the topmost node; where points move, that of the edge of the topmost
@@ -585,12 +575,11 @@ fn the_two_surfaces_differ_by_what_the_composite_gradient_gives_the_last_half_le
 fn a_run_whose_time_is_over_ends_within_its_first_step() {
     let layer = || {
         let method = Method::named("GC-SRI-patch").expect("known");
-        discretised(SceneKind::CosineLayer, &Column::layer(), &Material::default(), method, 4, 2)
-            .expect("a layer")
+        discretised(&COSINE_LAYER, &Column::layer(), &Material::default(), method, 4, 2).expect("a layer")
     };
     let column = |method: &str| Discretised::from(seed(method, &Material::default(), 6));
     for problem in [layer(), column("GC-SRI-patch"), column("TL-GC-SRI-patch")] {
-        let rule = TimeStepRule::Growth(0.05);
+        let rule = TimeStep::Growth(0.05);
         let mut plan = schedule(&Material::default(), IntegratorKind::Implicit, rule, &[0.1]);
         plan.time_limit = TimeLimit::after(0.0);
         // Nobody else ends it.
@@ -607,13 +596,10 @@ fn steps_by_tolerance_start_from_points_off_their_lattice() {
         let method = Method::named(method).expect("known");
         let mut column = Column::default();
         column.points.jitter = 0.2;
-        let problem = || {
-            column_problem::<1>(SceneKind::Terzaghi, &column, &Material::default(), method, 8, 2)
-                .expect("a column")
-        };
-        let by_tolerance =
-            solve(problem(), IntegratorKind::Implicit, TimeStepRule::Tolerance(1e-5), &[0.1, 0.5]);
-        let growing = solve(problem(), IntegratorKind::Implicit, TimeStepRule::Growth(0.01), &[0.1, 0.5]);
+        let problem =
+            || column_problem::<1>(&TERZAGHI, &column, &Material::default(), method, 8, 2).expect("a column");
+        let by_tolerance = solve(problem(), IntegratorKind::Implicit, TimeStep::Tolerance(1e-5), &[0.1, 0.5]);
+        let growing = solve(problem(), IntegratorKind::Implicit, TimeStep::Growth(0.01), &[0.1, 0.5]);
         assert_eq!(by_tolerance.status, RunStatus::Ok);
         for (adaptive, reference) in by_tolerance.snapshots.iter().zip(&growing.snapshots) {
             assert!(

@@ -9,23 +9,23 @@ use oedometer_problem::method::{Configuration, Method};
 use oedometer_problem::outcome::{Outcome, RunStatus};
 use oedometer_problem::settings::{Drag, ExplicitSettings};
 use oedometer_problem::snapshot::Snapshot;
-use oedometer_problem::time_step::TimeStepRule;
-use oedometer_scenes::SceneKind;
+use oedometer_problem::time_step::TimeStep;
 use oedometer_scenes::column::Column;
+use oedometer_scenes::{Scene, TERZAGHI};
 use oedometer_soil::material::Material;
 use proptest::prelude::*;
 
 /// A run in dimensionless words, small enough for many of them.
 #[derive(Clone, Debug)]
 struct Setup {
-    scene: SceneKind,
+    scene: &'static Scene,
     column: Column,
     soil: Material,
     method: Method,
     cells: usize,
     points_per_cell: usize,
     settings: ExplicitSettings,
-    rule: TimeStepRule,
+    rule: TimeStep,
     kernel: Kernel,
     time_factors: Vec<f64>,
 }
@@ -33,14 +33,14 @@ struct Setup {
 impl Setup {
     fn new(method: &str) -> Self {
         Self {
-            scene: SceneKind::Terzaghi,
+            scene: &TERZAGHI,
             column: Column::default(),
             soil: Material::default(),
             method: Method::named(method).expect("a known method"),
             cells: 5,
             points_per_cell: 2,
             settings: ExplicitSettings::default(),
-            rule: TimeStepRule::Stable(0.8),
+            rule: TimeStep::Stable(0.8),
             kernel: Kernel::Fastest,
             time_factors: vec![0.0, 0.02, 0.05],
         }
@@ -71,7 +71,7 @@ impl Setup {
             time_limit: TimeLimit::default(),
             outputs: self.time_factors.iter().map(|factor| factor * seconds).collect(),
             history: Vec::new(),
-            rule: self.rule,
+            time_step: self.rule,
             settings: self.settings,
             kernel: self.kernel,
         };
@@ -276,14 +276,14 @@ proptest! {
         drag in prop::sample::select(vec![Drag::Explicit, Drag::Implicit]),
         porosity in 0.2..0.6_f64,
     ) {
-        let solved = |name: &str, rule: TimeStepRule| {
+        let solved = |name: &str, rule: TimeStep| {
             let mut setup = Setup::new(name);
             (setup.cells, setup.points_per_cell, setup.settings.drag) = (cells, points_per_cell, drag);
             (setup.soil.porosity, setup.rule) = (porosity, rule);
             setup.solve()
         };
-        let mut full = solved("GIMP", TimeStepRule::Stable(0.5));
-        let same_step = TimeStepRule::Seconds(full.step_sizes.target);
+        let mut full = solved("GIMP", TimeStep::Stable(0.5));
+        let same_step = TimeStep::Seconds(full.step_sizes.target);
         let full = full.snapshots.pop().expect("an output");
         for name in ["MPM", "GIMP-SRI", "uGIMP", "uGIMP-SRI"] {
             let other = solved(name, same_step).snapshots.pop().expect("an output");
@@ -350,7 +350,7 @@ fn the_difference_that_motion_makes_is_proportional_to_the_strain() {
 fn settlement_kept(flip: f64, seconds: f64) -> f64 {
     let settlement = |flip: f64| {
         let mut setup = Setup::new("GIMP-SRI-patch");
-        (setup.settings.flip, setup.rule) = (flip, TimeStepRule::Seconds(seconds));
+        (setup.settings.flip, setup.rule) = (flip, TimeStep::Seconds(seconds));
         setup.time_factors = vec![0.01];
         setup.end().settlement
     };
@@ -376,7 +376,7 @@ fn drag_at_old_and_at_new_velocities_consolidate_alike() {
     for name in ["GIMP", "GC-SRI-patch"] {
         let with = |drag: Drag, share: f64| {
             let mut setup = Setup::new(name);
-            (setup.settings.drag, setup.rule) = (drag, TimeStepRule::Courant(share));
+            (setup.settings.drag, setup.rule) = (drag, TimeStep::Courant(share));
             setup.end()
         };
         let differences = [0.4, 0.1]
@@ -391,7 +391,7 @@ fn mapping_back_or_not_consolidates_alike() {
     for name in ["GIMP-SRI-patch", "GC-SRI-patch"] {
         let with = |mapping_back: bool| {
             let mut setup = Setup::new(name);
-            (setup.settings.mapping_back, setup.rule) = (mapping_back, TimeStepRule::Courant(0.2));
+            (setup.settings.mapping_back, setup.rule) = (mapping_back, TimeStep::Courant(0.2));
             setup.end()
         };
         let largest = field_difference(&with(true), &with(false));
@@ -404,7 +404,7 @@ fn mapping_back_or_not_consolidates_alike() {
 fn results_do_not_depend_on_the_step_size() {
     let at = |share: f64| {
         let mut setup = Setup::new("GC-SRI-patch");
-        setup.rule = TimeStepRule::Stable(share);
+        setup.rule = TimeStep::Stable(share);
         setup.end()
     };
     let largest = field_difference(&at(0.9), &at(0.1));

@@ -6,7 +6,7 @@ use oedometer_mpm::run::Schedule;
 use oedometer_problem::method::Method;
 use oedometer_problem::outcome::Outcome;
 use oedometer_problem::problem::StartError;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::Scene;
 use oedometer_scenes::column::Column;
 use oedometer_soil::material::Material;
 
@@ -20,7 +20,7 @@ mod two_dimensions;
 
 /// A scene's problem in the dimension that is asked for.
 fn column_problem<const D: usize>(
-    scene: SceneKind,
+    scene: &'static Scene,
     column: &Column,
     soil: &Material,
     method: Method,
@@ -32,7 +32,7 @@ fn column_problem<const D: usize>(
 
 /// A scene's problem in the dimensions of its column.
 fn discretised(
-    scene: SceneKind,
+    scene: &'static Scene,
     column: &Column,
     soil: &Material,
     method: Method,

@@ -14,8 +14,8 @@ use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::method::Method;
 use oedometer_problem::outcome::RunStatus;
 use oedometer_problem::settings::{Drag, ExplicitSettings, Scheme};
-use oedometer_problem::time_step::TimeStepRule;
-use oedometer_scenes::SceneKind;
+use oedometer_problem::time_step::TimeStep;
+use oedometer_scenes::XIE_LEO;
 use oedometer_scenes::column::Column;
 use oedometer_soil::law::Law;
 use oedometer_soil::material::Material;
@@ -265,7 +265,7 @@ impl ByHand {
 fn difference_of(method: &str, soil: &Material, settings: &ExplicitSettings) -> [f64; 3] {
     let column = Column { load: 1.9e5, ..odd_column() };
     let method_of = Method::named(method).expect("a known method");
-    let problem = column_problem::<1>(SceneKind::XieLeo, &column, soil, method_of, CELLS, POINTS_PER_CELL)
+    let problem = column_problem::<1>(&XIE_LEO, &column, soil, method_of, CELLS, POINTS_PER_CELL)
         .expect("a possible column");
     let mut by_hand = ByHand::new(&problem, method != "MPM");
     let mut last = 0.0;
@@ -280,7 +280,7 @@ fn difference_of(method: &str, soil: &Material, settings: &ExplicitSettings) -> 
     let schedule = Schedule {
         outputs: vec![STEPS as f64 * STEP],
         history: Vec::new(),
-        rule: TimeStepRule::Seconds(STEP),
+        time_step: TimeStep::Seconds(STEP),
         settings: *settings,
         kernel: Kernel::Fastest,
         integrator: IntegratorKind::Explicit,

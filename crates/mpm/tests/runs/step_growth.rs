@@ -14,9 +14,9 @@ use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::method::Method;
 use oedometer_problem::outcome::RunStatus;
 use oedometer_problem::settings::{Drag, ExplicitSettings};
-use oedometer_problem::time_step::TimeStepRule;
-use oedometer_scenes::SceneKind;
+use oedometer_problem::time_step::TimeStep;
 use oedometer_scenes::column::{Column, Shape};
+use oedometer_scenes::{COSINE_LAYER, MANDEL, XIE_LEO};
 use oedometer_soil::material::Material;
 
 /// A doubling in seventy thousand steps.
@@ -27,12 +27,12 @@ const SHARE: f64 = 0.8;
 /// A small plane of a method.
 fn plane(method: &str, boundary: &str, cells: usize, conductivity: f64) -> Discretised {
     let (scene, column) = match boundary {
-        "rough" => (SceneKind::CosineLayer, Column::layer()),
+        "rough" => (&COSINE_LAYER, Column::layer()),
         "smooth" => (
-            SceneKind::CosineLayer,
+            &COSINE_LAYER,
             Column { shape: Shape::Layer { length: 1.0, base: Base::Smooth }, ..Column::layer() },
         ),
-        _ => (SceneKind::Mandel, Column::slab().with_extent(0.5)),
+        _ => (&MANDEL, Column::slab().with_extent(0.5)),
     };
     let soil = Material { hydraulic_conductivity: conductivity, ..Material::default() };
     let method = Method::named(method).expect("a known method");
@@ -117,7 +117,7 @@ fn stable_steps_are_refused_where_a_mode_grows_far_and_give_its_growth_elsewhere
         // The last output ends the run.
         outputs: vec![0.01 * end, end],
         history: Vec::new(),
-        rule,
+        time_step: rule,
         settings,
         kernel: Kernel::Fastest,
         integrator: IntegratorKind::Explicit,
@@ -131,7 +131,7 @@ fn stable_steps_are_refused_where_a_mode_grows_far_and_give_its_growth_elsewhere
     let rate = problem().growth_under(&settings, step).expect("a small plane").ln() / step;
     // The time in which the mode grows by a hundred times.
     let end = 100.0_f64.ln() / rate;
-    let share = TimeStepRule::Stable(0.5);
+    let share = TimeStep::Stable(0.5);
     let RunStatus::Failed(failure) = run(problem(), &schedule(1.05 * end, share)).status else {
         panic!("it ran");
     };
@@ -146,7 +146,7 @@ fn stable_steps_are_refused_where_a_mode_grows_far_and_give_its_growth_elsewhere
     let wanted = of_step.powf(0.5 * end / sizes.target);
     let growth = sizes.growth.expect("a mode grows");
     assert!(growth > 2.0 && (growth / wanted - 1.0).abs() < 1e-3, "{growth} for {wanted}");
-    assert_eq!(run_of(1e-6, TimeStepRule::Seconds(1e-7)).growth, None, "steps as they are asked for");
+    assert_eq!(run_of(1e-6, TimeStep::Seconds(1e-7)).growth, None, "steps as they are asked for");
 }
 
 #[test]
@@ -167,7 +167,7 @@ fn the_predicted_step_of_f_bar_is_the_observed_one_at_large_strain() {
     let column = Column { load: 1e5, dimensions: 2, ..Column::default() }.with_extent(0.5);
     for name in ["GIMP-Bbar", "GC-Bbar-patch", "VP-Bbar", "TL-GC-Bbar-patch"] {
         let method = Method::named(name).expect("a known method");
-        let problem = discretised(SceneKind::XieLeo, &column, &Material::default(), method, 6, 2);
+        let problem = discretised(&XIE_LEO, &column, &Material::default(), method, 6, 2);
         let limit = problem.expect("a column").critical_step(&settings, 0.0, 0, &|_, _| true);
         let limit = limit.expect("nobody stops it");
         let deviation = limit.deviation().expect("a step that fails");

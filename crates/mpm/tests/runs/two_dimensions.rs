@@ -12,9 +12,9 @@ use oedometer_problem::method::{Basis, Memory, Method};
 use oedometer_problem::outcome::{Outcome, RunStatus};
 use oedometer_problem::settings::{Drag, ExplicitSettings};
 use oedometer_problem::snapshot::Snapshot;
-use oedometer_problem::time_step::TimeStepRule;
-use oedometer_scenes::SceneKind;
+use oedometer_problem::time_step::TimeStep;
 use oedometer_scenes::column::{Column, Shape};
+use oedometer_scenes::{COSINE_LAYER, SINGLE_MODE, Scene, TERZAGHI, XIE_LEO};
 use oedometer_soil::material::Material;
 
 const CELLS: usize = 10;
@@ -22,20 +22,20 @@ const PER_CELL: usize = 2;
 
 /// Runs a scene in one and in two dimensions with the same steps.
 fn run_in_both_dimensions(
-    scene: SceneKind,
+    scene: &'static Scene,
     method: Method,
     load: f64,
     end: f64,
     drag: Drag,
 ) -> (Outcome, Outcome) {
-    let soil = Material { law: scene.default_law(), ..Material::default() };
+    let soil = Material { law: (scene.soil)().law, ..Material::default() };
     let column = Column { load, ..Column::default() };
     let plane = Column { dimensions: 2, ..column };
     let schedule = Schedule {
         critical_step: None,
         outputs: vec![0.5 * end, end],
         history: vec![0.25 * end],
-        rule: TimeStepRule::Seconds(1.2e-5),
+        time_step: TimeStep::Seconds(1.2e-5),
         settings: ExplicitSettings { drag, ..ExplicitSettings::default() },
         kernel: Kernel::PointWise,
         integrator: IntegratorKind::Explicit,
@@ -100,10 +100,10 @@ fn methods() -> Vec<Method> {
 
 #[test]
 fn the_paper_s_grid_is_its_column_at_small_strain_whatever_the_method() {
-    for scene in [SceneKind::Terzaghi, SceneKind::SingleMode] {
+    for scene in [&TERZAGHI, &SINGLE_MODE] {
         for method in methods().into_iter().filter(|method| method.configuration.is_none()) {
             let (column, plane) = run_in_both_dimensions(scene, method, 1e3, 0.01, Drag::Explicit);
-            assert_same(&format!("{} {method}", scene.name()), &column, &plane, 1e-10);
+            assert_same(&format!("{} {method}", scene.name), &column, &plane, 1e-10);
         }
     }
 }
@@ -113,7 +113,7 @@ fn the_paper_s_grid_is_its_column_at_200_kpa_whatever_the_method() {
     // Points of a column share the length of their cell (`-cells`); domains that turn do so in the column alone.
     let turns = |method: &Method| method.basis == Basis::Cpdi && method.memory == Memory::Cells;
     for method in methods().into_iter().filter(|method| !turns(method)) {
-        let (column, plane) = run_in_both_dimensions(SceneKind::XieLeo, method, 2e5, 0.03, Drag::Implicit);
+        let (column, plane) = run_in_both_dimensions(&XIE_LEO, method, 2e5, 0.03, Drag::Implicit);
         assert_same(&format!("xie-leo {method}"), &column, &plane, 1e-9);
     }
 }
@@ -123,7 +123,7 @@ fn layer(method: &str, base: Base) -> Discrete<2> {
     let (column, soil) =
         (Column { shape: Shape::Layer { length: 1.0, base }, ..Column::layer() }, Material::default());
     let method = Method::named(method).expect("a known method");
-    column_problem(SceneKind::CosineLayer, &column, &soil, method, 6, PER_CELL).expect("the seed layer")
+    column_problem(&COSINE_LAYER, &column, &soil, method, 6, PER_CELL).expect("the seed layer")
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn the_assembled_plane_is_the_point_wise_step_to_round_off() {
                     critical_step: Some(1e-3),
                     outputs: vec![0.0, 0.001],
                     history: vec![0.0005],
-                    rule: TimeStepRule::Seconds(1e-5),
+                    time_step: TimeStep::Seconds(1e-5),
                     settings: ExplicitSettings { drag, flip, mapping_back, ..ExplicitSettings::default() },
                     kernel,
                     integrator: IntegratorKind::Explicit,
@@ -179,7 +179,7 @@ fn the_predicted_step_of_a_plane_separates_stable_from_unstable_runs() {
                     critical_step: None,
                     outputs: vec![0.3],
                     history: Vec::new(),
-                    rule: TimeStepRule::Stable(share),
+                    time_step: TimeStep::Stable(share),
                     settings: ExplicitSettings { mapping_back, ..ExplicitSettings::default() },
                     kernel: Kernel::Fastest,
                     integrator: IntegratorKind::Explicit,

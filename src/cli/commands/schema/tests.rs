@@ -179,7 +179,7 @@ fn every_record_keeps_to_the_schema_and_misses_nothing() {
 #[test]
 fn a_case_file_keeps_to_its_schema() {
     let schema = schema_of(Document::Case);
-    for scene in oedometer_scenes::SceneKind::ALL {
+    for scene in oedometer_scenes::SCENES {
         let case = crate::case::Case { cells: 4, ..crate::case::Case::seed(crate::case::Task::Solve, scene) };
         let value = serde_json::to_value(CaseFile::of(&case)).expect("JSON");
         assert_eq!(breach(&schema, &value, "case"), None, "{scene:?}");

@@ -17,7 +17,7 @@ use crate::score::score_series::ScoredSeries;
 use crate::study::overrides::{Asked, Outputs};
 use crate::study::solver::Preset;
 use oedometer_exact::reference::ReferenceKind;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::Scene;
 use oedometer_soil::wording::{count_of, typed};
 use std::path::PathBuf;
 
@@ -81,7 +81,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             print_data(preset.text())?;
             return Ok(Exit::Pass);
         }
-        let axes = SceneKind::named(&arguments.scene).map_or(Axes::Column, Axes::of);
+        let axes = Scene::named(&arguments.scene).map_or(Axes::Column, Axes::of);
         print_data(convention_of(axes))?;
         return Ok(Exit::Pass);
     }

@@ -103,7 +103,7 @@ fn the_exact_field_of_a_run_is_not_that_of_another_time_lattice_or_soil() {
     assert_eq!(records.len(), 16);
     let exact = |record: &Record, time: f64| {
         let case = &record.case;
-        let own = case.scene.references()[0].for_soil(&case.material);
+        let own = case.scene.references[0].kind.for_soil(&case.material);
         let reference = known_reference(case, own, &[time]).expect("a theory");
         let points = &record.snapshot(time).expect("a state").points;
         let load = case.column.pressure_scale();

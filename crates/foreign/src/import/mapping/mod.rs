@@ -12,7 +12,8 @@ use crate::import::mapping::units::{
 };
 use crate::source::StudySource;
 use oedometer_case::quantity::{Quantity, Sample};
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::Scene;
+use oedometer_scenes::scene::Body;
 use oedometer_soil::wording::words;
 use serde::Deserialize;
 
@@ -97,13 +98,11 @@ pub enum Axes {
 
 impl Axes {
     /// Those of a scene.
-    pub fn of(scene: SceneKind) -> Self {
-        if scene.has_plates() {
-            Self::Slab
-        } else if scene.has_plane_fields() {
-            Self::Layer
-        } else {
-            Self::Column
+    pub fn of(scene: &'static Scene) -> Self {
+        match scene.body {
+            Body::Slab => Self::Slab,
+            Body::Layer | Body::Square => Self::Layer,
+            Body::Column => Self::Column,
         }
     }
 }

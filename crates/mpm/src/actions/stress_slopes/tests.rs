@@ -4,13 +4,13 @@ use super::*;
 use crate::kernel::body::Body;
 use crate::tests::column_problem;
 use oedometer_problem::method::Method;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::MANUFACTURED_BOX;
 use oedometer_soil::tensor::Tensor;
 
 /// The unit square in four by four cells, its points' domains tiling it in rows and columns that are nowhere alike.
 fn body_of_uneven_tiles() -> Body<2> {
-    let scene = SceneKind::ManufacturedBox;
-    let (column, soil) = (scene.default_column(), scene.default_material());
+    let scene = &MANUFACTURED_BOX;
+    let (column, soil) = ((scene.column)(), (scene.soil)());
     let method = Method::named("GIMP-SRI-patch").expect("a method");
     let problem = column_problem::<2>(scene, &column, &soil, method, 4, 2).expect("the unit square");
     let mut body = Body::new(problem);

@@ -116,7 +116,7 @@ mod tests {
     use oedometer_problem::method::Method;
     use oedometer_problem::settings::{Drag, ExplicitSettings};
     use oedometer_problem::wave_speeds::combined_limit;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::DYNAMIC_COLUMN;
     use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
 
@@ -126,7 +126,7 @@ mod tests {
         let soil = Material { porosity: 0.43, ..Material::default() };
         let column = Column { dimensions: D, height: 2.3, load: 37.0, ..Column::default() }.with_extent(0.92);
         let method = Method::named("GIMP-SRI").expect("a known method");
-        let problem = column_problem::<D>(SceneKind::DynamicColumn, &column, &soil, method, 5, 2);
+        let problem = column_problem::<D>(&DYNAMIC_COLUMN, &column, &soil, method, 5, 2);
         let problem = problem.expect("a column");
         let dt = 0.5 * combined_limit(&soil, problem.grid.cell_size, Drag::Implicit);
         let settings = ExplicitSettings { drag: Drag::Implicit, mapping_back, ..ExplicitSettings::default() };

@@ -233,7 +233,7 @@ mod tests {
     use super::*;
     use crate::tests::column_problem;
     use oedometer_problem::method::Method;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::COSINE_LAYER;
     use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
 
@@ -245,7 +245,7 @@ mod tests {
             let method = Method::named(name).expect("a known method");
             let column = Column { load: 1.0, ..Column::layer() };
             let soil = Material { water_bulk_modulus: 1e7, ..Material::default() };
-            let problem = column_problem::<2>(SceneKind::CosineLayer, &column, &soil, method, 4, 2);
+            let problem = column_problem::<2>(&COSINE_LAYER, &column, &soil, method, 4, 2);
             let mut problem = problem.expect("the seed layer");
             problem.undrained_start = false;
             let mut body = Body::new(problem);

@@ -71,7 +71,7 @@ mod tests {
     use crate::tests::column_problem;
     use oedometer_problem::method::Method;
     use oedometer_problem::settings::Drag;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::COSINE_LAYER;
     use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
 
@@ -80,7 +80,7 @@ mod tests {
         let usual = Material::default();
         let key = |name: &str, soil: &Material, drag: Drag, safe: f64, sharp: bool| {
             let method = Method::named(name).expect("a known method");
-            let problem = column_problem::<2>(SceneKind::CosineLayer, &Column::layer(), soil, method, 2, 2);
+            let problem = column_problem::<2>(&COSINE_LAYER, &Column::layer(), soil, method, 2, 2);
             let step = AssembledStep::new(&Body::new(problem.expect("a layer")));
             key_of(&step, &ExplicitSettings { drag, ..ExplicitSettings::default() }, safe, sharp)
         };

@@ -50,7 +50,7 @@ mod tests {
     use crate::tests::column_problem;
     use oedometer_problem::method::Method;
     use oedometer_problem::settings::ExplicitSettings;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::COSINE_LAYER;
     use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
 
@@ -85,7 +85,7 @@ mod tests {
     fn the_step_of_a_layer_falls_into_an_even_and_an_odd_part() {
         let method = Method::named("GC-SRI-patch").expect("a known method");
         let problem =
-            column_problem::<2>(SceneKind::CosineLayer, &Column::layer(), &Material::default(), method, 4, 2);
+            column_problem::<2>(&COSINE_LAYER, &Column::layer(), &Material::default(), method, 4, 2);
         let step = AssembledStep::new(&Body::new(problem.expect("a layer")));
         let sizes = |images: &[Image]| -> Vec<usize> {
             let operator = step.operator(1e-5, &ExplicitSettings::default());

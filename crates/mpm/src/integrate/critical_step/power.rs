@@ -39,7 +39,7 @@ mod tests {
     use super::*;
     use crate::tests::column_problem;
     use oedometer_problem::method::Method;
-    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::COSINE_LAYER;
     use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
 
@@ -48,7 +48,7 @@ mod tests {
         let asymmetry_of = |name: &str| {
             let method = Method::named(name).expect("a known method");
             let (column, soil) = (Column { load: 1.0, ..Column::layer() }, Material::default());
-            let problem = column_problem::<2>(SceneKind::CosineLayer, &column, &soil, method, 4, 2);
+            let problem = column_problem::<2>(&COSINE_LAYER, &column, &soil, method, 4, 2);
             let mut problem = problem.expect("the seed layer");
             problem.undrained_start = false;
             asymmetry(&Body::new(problem))

@@ -247,8 +247,8 @@ mod tests {
     use oedometer_problem::arrangement::Arrangement;
     use oedometer_problem::method::Method;
     use oedometer_problem::settings::Drag;
-    use oedometer_scenes::SceneKind;
     use oedometer_scenes::column::Column;
+    use oedometer_scenes::{COSINE_LAYER, LAYERED, Scene, TERZAGHI, XIE_LEO};
     use oedometer_soil::layers::{SoilLayer, SoilLayers};
     use oedometer_soil::material::Material;
 
@@ -259,9 +259,8 @@ mod tests {
             let points = Arrangement { filling, ..Arrangement::default() };
             let column = Column { points, ..Column::default() };
             let method = Method::named(name).expect("a known method");
-            let problem =
-                column_problem::<1>(SceneKind::Terzaghi, &column, &Material::default(), method, 14, 2)
-                    .expect("the seed column");
+            let problem = column_problem::<1>(&TERZAGHI, &column, &Material::default(), method, 14, 2)
+                .expect("the seed column");
             let uncut = predict(&problem, &settings, 14).critical_step;
             let cut = predict(&problem, &settings, FEW_CELLS).critical_step;
             assert!((cut / uncut - 1.0).abs() < 0.01, "{name} {filling}: {cut} for {uncut}");
@@ -280,7 +279,7 @@ mod tests {
         };
         let soft_water = Material { water_bulk_modulus: 2e6, ..Material::default() };
         let method = Method::named("GIMP-SRI").expect("a known method");
-        let problem = column_problem::<1>(SceneKind::Layered, &column, &soft_water, method, 16, 2);
+        let problem = column_problem::<1>(&LAYERED, &column, &soft_water, method, 16, 2);
         let problem = problem.expect("a column of layers");
         let limit = |most| predict(&problem, &ExplicitSettings::default(), most).critical_step;
         assert_eq!(limit(FEW_CELLS), limit(16));
@@ -291,7 +290,7 @@ mod tests {
         let method = Method::named("GIMP-SRI").expect("a known method");
         let of = |per_cell| {
             let (column, soil) = (Column::default(), Material::default());
-            column_problem::<1>(SceneKind::Terzaghi, &column, &soil, method, 4, per_cell).expect("a column")
+            column_problem::<1>(&TERZAGHI, &column, &soil, method, 4, per_cell).expect("a column")
         };
         for [solid, water] in [[2, 3], [3, 2]] {
             let problem = Discrete { water: Some(of(water).points), ..of(solid) };
@@ -302,19 +301,19 @@ mod tests {
     #[test]
     fn cells_of_one_pressure_rate_have_the_limit_of_constant_recovery() {
         let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
-        let limit = |name: &str, scene: SceneKind, sets: usize| {
+        let limit = |name: &str, scene: &'static Scene, sets: usize| {
             let points = Arrangement { sets, ..Arrangement::default() };
             let column = Column { points, load: 2e5, ..Column::default() };
-            let law = scene.default_law();
+            let law = (scene.soil)().law;
             let soil = Material { law, ..Material::default() };
             let method = Method::named(name).expect("a known method");
             let problem = column_problem::<1>(scene, &column, &soil, method, 8, 4).expect("a column");
             predicted_critical_step(&problem, &settings)
         };
-        let moving = |name, layers| limit(name, SceneKind::XieLeo, layers);
+        let moving = |name, layers| limit(name, &XIE_LEO, layers);
         assert_eq!(moving("GIMP-SRI-patch", 2), moving("GIMP-SRI", 1));
         assert!(moving("GIMP-SRI-patch", 1) > 1.04 * moving("GIMP-SRI", 1));
-        let frozen = |name, layers| limit(name, SceneKind::Terzaghi, layers);
+        let frozen = |name, layers| limit(name, &TERZAGHI, layers);
         assert_eq!(frozen("GIMP-SRI-patch", 2), frozen("GIMP-SRI-patch", 1));
     }
 
@@ -336,8 +335,8 @@ mod tests {
         // With more drag the growth rises with the step, and ends it before the waves do.
         for (conductivity, ends_early) in [(0.1, false), (0.01, true)] {
             let soil = Material { hydraulic_conductivity: conductivity, ..Material::default() };
-            let problem = column_problem::<2>(SceneKind::CosineLayer, &Column::layer(), &soil, method, 6, 2)
-                .expect("a layer");
+            let problem =
+                column_problem::<2>(&COSINE_LAYER, &Column::layer(), &soil, method, 6, 2).expect("a layer");
             let prediction = predict(&problem, &settings, FEW_CELLS);
             let mode = prediction.growing.expect("patch rates grow with little drag");
             let rate = |step: f64| (prediction.growth(step).expect("a small plane")).ln() / step;

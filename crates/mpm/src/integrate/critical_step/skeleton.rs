@@ -103,15 +103,15 @@ mod tests {
     use oedometer_problem::arrangement::Arrangement;
     use oedometer_problem::method::Method;
     use oedometer_problem::wave_speeds;
-    use oedometer_scenes::SceneKind;
     use oedometer_scenes::column::Column;
+    use oedometer_scenes::{COSINE_LAYER, TERZAGHI};
     use oedometer_soil::material::Material;
 
     fn problem<const D: usize>(name: &str, soil: &Material, points: Arrangement) -> Discrete<D> {
         let method = Method::named(name).expect("a known method");
         let (scene, column) = match D {
-            1 => (SceneKind::Terzaghi, Column::default()),
-            _ => (SceneKind::CosineLayer, Column::layer()),
+            1 => (&TERZAGHI, Column::default()),
+            _ => (&COSINE_LAYER, Column::layer()),
         };
         column_problem::<D>(scene, &Column { points, ..column }, soil, method, 12, 4).expect("a column")
     }

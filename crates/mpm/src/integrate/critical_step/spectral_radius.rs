@@ -295,8 +295,8 @@ mod tests {
     use oedometer_problem::method::Method;
     use oedometer_problem::settings::Drag;
     use oedometer_problem::wave_speeds;
-    use oedometer_scenes::SceneKind;
     use oedometer_scenes::column::Column;
+    use oedometer_scenes::{COSINE_LAYER, XIE_LEO};
     use oedometer_soil::material::Material;
 
     #[test]
@@ -305,8 +305,8 @@ mod tests {
         // Beyond the limit waves grow too slowly for few steps to show it.
         let soil = Material { hydraulic_conductivity: 1e-7, ..Material::default() };
         let method = Method::named("GIMP").expect("a known method");
-        let problem = column_problem::<2>(SceneKind::CosineLayer, &Column::layer(), &soil, method, 9, 2)
-            .expect("a layer");
+        let problem =
+            column_problem::<2>(&COSINE_LAYER, &Column::layer(), &soil, method, 9, 2).expect("a layer");
         let safe = wave_speeds::combined_limit(&soil, problem.grid.cell_size, settings.drag);
         let mut step = AssembledStep::new(&Body::new(problem));
         assert!(step.unknowns() > MOST_SQUARED);
@@ -319,8 +319,7 @@ mod tests {
         let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
         let (column, soil) = (Column { dimensions: 2, ..Column::default() }, Material::default());
         let method = Method::named("GC-SRI-patch").expect("a known method");
-        let problem =
-            column_problem::<2>(SceneKind::XieLeo, &column, &soil, method, 10, 4).expect("a column");
+        let problem = column_problem::<2>(&XIE_LEO, &column, &soil, method, 10, 4).expect("a column");
         let safe = wave_speeds::combined_limit(&soil, problem.grid.cell_size, settings.drag);
         let mut step = AssembledStep::new(&Body::new(problem));
         let limit = critical_step(&step, &settings, safe, GROWTH_TOLERANCE, false);

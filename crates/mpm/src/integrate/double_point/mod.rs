@@ -251,21 +251,27 @@ mod tests {
     use oedometer_problem::settings::Scheme;
     use oedometer_problem::settings::{Drag, ExplicitSettings};
     use oedometer_problem::snapshot::{Snapshot, Totals};
-    use oedometer_problem::time_step::TimeStepRule;
-    use oedometer_scenes::SceneKind;
+    use oedometer_problem::time_step::TimeStep;
     use oedometer_scenes::column::Column;
+    use oedometer_scenes::{COSINE_LAYER, SINGLE_MODE, Scene, TERZAGHI, XIE_LEO};
     use oedometer_soil::law::Law;
     use oedometer_soil::material::Material;
 
     /// A column, or a plane, under a load, with points of the water or without.
-    fn problem<const D: usize>(scene: SceneKind, method: &str, points: [usize; 2], load: f64) -> Discrete<D> {
+    fn problem<const D: usize>(
+        scene: &'static Scene,
+        method: &str,
+        points: [usize; 2],
+        load: f64,
+    ) -> Discrete<D> {
         let [of_skeleton, of_water] = points;
         let sets = if of_water == 0 { 1 } else { 2 };
         let arrangement = Arrangement { sets, water_per_cell: of_water, ..Arrangement::default() };
-        let base = if scene.needs_two_dimensions() { Column::layer() } else { Column::default() };
-        let width = if scene.needs_two_dimensions() { 1.0 } else { 0.4 };
+        let is_column = scene.body == oedometer_scenes::scene::Body::Column;
+        let base = if is_column { Column::default() } else { Column::layer() };
+        let width = if is_column { 0.4 } else { 1.0 };
         let column = Column { load, points: arrangement, dimensions: D, ..base }.with_extent(width);
-        let law = if scene == SceneKind::XieLeo { Law::LogLinear } else { Law::Linear };
+        let law = if scene == &XIE_LEO { Law::LogLinear } else { Law::Linear };
         let soil = Material { law, hydraulic_conductivity: 1e-3, ..Material::default() };
         let method = Method::named(method).expect("a known method");
         column_problem(scene, &column, &soil, method, 5, of_skeleton).expect("a column")
@@ -275,7 +281,7 @@ mod tests {
         let schedule = Schedule {
             outputs: vec![0.0, end],
             history: Vec::new(),
-            rule: TimeStepRule::Stable(0.7),
+            time_step: TimeStep::Stable(0.7),
             settings,
             kernel: Kernel::PointWise,
             integrator: IntegratorKind::Explicit,
@@ -318,7 +324,7 @@ mod tests {
         let names =
             ["MPM", "GIMP", "GIMP-SRI", "GC-SRI-patch", "GIMP-SRI-nodal", "GIMP-mean", "VP", "GC-Bbar-patch"];
         for name in names.into_iter().chain(["GIMP-null-space"]) {
-            for scene in [SceneKind::SingleMode, SceneKind::Terzaghi] {
+            for scene in [&SINGLE_MODE, &TERZAGHI] {
                 let sets = |of_water| solved::<1>(problem(scene, name, [3, of_water], 1.0), implicit, 0.01);
                 assert_same(&sets(0), &sets(3), name);
             }
@@ -329,19 +335,14 @@ mod tests {
             ExplicitSettings { scheme: Scheme::Leapfrog, drag: Drag::Centred, ..implicit },
         ] {
             let sets = |of_water| {
-                solved::<1>(
-                    problem(SceneKind::SingleMode, "GIMP-SRI-patch", [2, of_water], 1.0),
-                    settings,
-                    0.01,
-                )
+                solved::<1>(problem(&SINGLE_MODE, "GIMP-SRI-patch", [2, of_water], 1.0), settings, 0.01)
             };
             assert_same(&sets(0), &sets(2), "settings");
         }
         // In the plane too, from an undrained start under a cosine.
         for name in ["GIMP-SRI-patch", "GIMP"] {
-            let sets = |of_water| {
-                solved::<2>(problem(SceneKind::CosineLayer, name, [2, of_water], 1.0), implicit, 1e-3)
-            };
+            let sets =
+                |of_water| solved::<2>(problem(&COSINE_LAYER, name, [2, of_water], 1.0), implicit, 1e-3);
             assert_same(&sets(0), &sets(2), name);
         }
     }
@@ -350,7 +351,7 @@ mod tests {
     fn an_undrained_start_has_the_same_pressure_at_other_water_points() {
         let settings = ExplicitSettings::default();
         let at = |of_water| {
-            solved::<2>(problem(SceneKind::CosineLayer, "GIMP-SRI-patch", [2, of_water], 1.0), settings, 1e-6)
+            solved::<2>(problem(&COSINE_LAYER, "GIMP-SRI-patch", [2, of_water], 1.0), settings, 1e-6)
         };
         let mean = |outcome: &Outcome| {
             let (pressure, volume) = outcome.start.centres.pressures();
@@ -366,7 +367,7 @@ mod tests {
     fn water_leaves_a_soil_that_settles_and_none_is_lost() {
         let implicit = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
         for name in ["GIMP", "GIMP-SRI-patch", "GIMP-SRI"] {
-            let outcome = solved::<1>(problem(SceneKind::XieLeo, name, [4, 4], 2e5), implicit, 0.15);
+            let outcome = solved::<1>(problem(&XIE_LEO, name, [4, 4], 2e5), implicit, 0.15);
             assert_eq!(outcome.status, RunStatus::Ok, "{name}");
             let last = &outcome.snapshots[1];
             let double = last.totals.double_point.expect("two sets of points");
@@ -387,8 +388,8 @@ mod tests {
         let implicit = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
         // The domains of CPDI's skeleton could turn, and the water's keep their axes.
         for method in ["GIMP-SRI-patch", "CPDI-SRI-patch"] {
-            let line = solved::<1>(problem(SceneKind::XieLeo, method, [2, 2], 2e5), implicit, 0.05);
-            let plane = solved::<2>(problem(SceneKind::XieLeo, method, [2, 2], 2e5), implicit, 0.05);
+            let line = solved::<1>(problem(&XIE_LEO, method, [2, 2], 2e5), implicit, 0.05);
+            let plane = solved::<2>(problem(&XIE_LEO, method, [2, 2], 2e5), implicit, 0.05);
             assert_eq!(plane.status, RunStatus::Ok, "{method}");
             let (line, plane) = (&line.snapshots[1], &plane.snapshots[1]);
             let left =
@@ -407,7 +408,7 @@ mod tests {
         let schedule = Schedule {
             outputs: vec![1e-3],
             history: Vec::new(),
-            rule: TimeStepRule::Growth(0.1),
+            time_step: TimeStep::Growth(0.1),
             settings: ExplicitSettings::default(),
             kernel: Kernel::Fastest,
             integrator: IntegratorKind::Implicit,
@@ -416,7 +417,7 @@ mod tests {
             threads: 1,
             time_limit: TimeLimit::default(),
         };
-        let outcome = run(problem::<1>(SceneKind::Terzaghi, "GIMP", [2, 2], 1.0), &schedule, &|_, _| true);
+        let outcome = run(problem::<1>(&TERZAGHI, "GIMP", [2, 2], 1.0), &schedule, &|_, _| true);
         let RunStatus::Failed(failure) = outcome.status else { panic!("solved") };
         assert!(failure.reason.contains("integrated explicitly, not by `implicit`"), "{}", failure.reason);
     }

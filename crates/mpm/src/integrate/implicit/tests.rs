@@ -13,22 +13,21 @@ use crate::time_limit::TimeLimit;
 use oedometer_problem::integrator::{Formulation, IntegratorKind};
 use oedometer_problem::method::Method;
 use oedometer_problem::settings::{Drag, ExplicitSettings};
-use oedometer_problem::time_step::TimeStepRule;
-use oedometer_scenes::SceneKind;
+use oedometer_problem::time_step::TimeStep;
 use oedometer_scenes::column::Column;
+use oedometer_scenes::{TERZAGHI, XIE_LEO};
 use oedometer_soil::law::Law;
 use oedometer_soil::material::Material;
 
 fn seed(method: &str, soil: &Material, cells: usize) -> Discrete<1> {
     let method = Method::named(method).expect("a known method");
-    column_problem(SceneKind::Terzaghi, &Column::default(), soil, method, cells, 2)
-        .expect("a possible column")
+    column_problem(&TERZAGHI, &Column::default(), soil, method, cells, 2).expect("a possible column")
 }
 
 fn large_strain(method: &str, soil: &Material, cells: usize) -> Discrete<1> {
     let method = Method::named(method).expect("a known method");
     let column = Column { load: 2e5, ..Column::default() };
-    column_problem(SceneKind::XieLeo, &column, soil, method, cells, 4).expect("a possible column")
+    column_problem(&XIE_LEO, &column, soil, method, cells, 4).expect("a possible column")
 }
 
 fn schedule() -> Schedule {
@@ -36,7 +35,7 @@ fn schedule() -> Schedule {
         critical_step: None,
         outputs: Vec::new(),
         history: Vec::new(),
-        rule: TimeStepRule::Seconds(1.0),
+        time_step: TimeStep::Seconds(1.0),
         settings: ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() },
         kernel: Kernel::Fastest,
         formulation: IntegratorKind::Implicit.default_formulation(),

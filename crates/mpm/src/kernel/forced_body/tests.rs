@@ -6,7 +6,7 @@ use crate::actions::forcing::{BodyForces, Forcing};
 use crate::tests::column_problem;
 use oedometer_problem::integrator::Formulation;
 use oedometer_problem::method::Method;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::MANUFACTURED_BOX;
 use std::sync::Arc;
 
 /// Constant forces, and a source that is the place along x, so that it says where it was asked for.
@@ -39,8 +39,8 @@ impl Forcing<2> for Plain {
 }
 
 fn body(method: &str) -> Body<2> {
-    let scene = SceneKind::ManufacturedBox;
-    let (column, soil) = (scene.default_column(), scene.default_material());
+    let scene = &MANUFACTURED_BOX;
+    let (column, soil) = ((scene.column)(), (scene.soil)());
     let method = Method::named(method).expect("a method");
     let mut problem = column_problem::<2>(scene, &column, &soil, method, 4, 2).expect("the unit square");
     problem.forcing = Some(Arc::new(Plain));

@@ -11,8 +11,8 @@ use oedometer_problem::integrator::{Formulation, IntegratorKind};
 use oedometer_problem::method::Method;
 use oedometer_problem::outcome::{Outcome, RunStatus};
 use oedometer_problem::settings::{Drag, ExplicitSettings};
-use oedometer_problem::time_step::TimeStepRule;
-use oedometer_scenes::SceneKind;
+use oedometer_problem::time_step::TimeStep;
+use oedometer_scenes::MANDEL;
 use oedometer_scenes::column::{Column, column_parameters};
 use oedometer_soil::material::Material;
 
@@ -26,10 +26,10 @@ fn slab(method: &str, soil: &Material, cells: usize, rows: usize) -> Discrete<2>
     let width = rows as f64 / cells as f64;
     let column = Column::slab().with_extent(width);
     let method = Method::named(method).expect("a known method");
-    column_problem::<2>(SceneKind::Mandel, &column, soil, method, cells, 2).expect("a possible slab")
+    column_problem::<2>(&MANDEL, &column, soil, method, cells, 2).expect("a possible slab")
 }
 
-fn solved(problem: Discrete<2>, integrator: IntegratorKind, kernel: Kernel, rule: TimeStepRule) -> Outcome {
+fn solved(problem: Discrete<2>, integrator: IntegratorKind, kernel: Kernel, rule: TimeStep) -> Outcome {
     let formulation = match integrator {
         IntegratorKind::Explicit => Formulation::VW,
         _ => Formulation::QuasiStatic,
@@ -41,14 +41,14 @@ fn solved_with(
     problem: Discrete<2>,
     (integrator, formulation): (IntegratorKind, Formulation),
     kernel: Kernel,
-    rule: TimeStepRule,
+    rule: TimeStep,
 ) -> Outcome {
     let soil = problem.material;
     let seconds = 1.0 / soil.coefficient_of_consolidation();
     let schedule = Schedule {
         outputs: vec![0.0, 0.05 * seconds, 0.1 * seconds],
         history: Vec::new(),
-        rule,
+        time_step: rule,
         settings: ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() },
         kernel,
         integrator,
@@ -63,7 +63,7 @@ fn solved_with(
 }
 
 fn implicit(problem: Discrete<2>) -> Outcome {
-    solved(problem, IntegratorKind::Implicit, Kernel::Fastest, TimeStepRule::Growth(0.01))
+    solved(problem, IntegratorKind::Implicit, Kernel::Fastest, TimeStep::Growth(0.01))
 }
 
 /// Largest difference of two lists over the largest number of the second.
@@ -137,7 +137,7 @@ fn a_second_row_of_cells_under_the_plate_changes_nothing() {
 
 #[test]
 fn the_assembled_slab_is_the_point_wise_one_and_explicit_is_implicit_within_the_time_error() {
-    let rule = TimeStepRule::Stable(0.6);
+    let rule = TimeStep::Stable(0.6);
     for method in ["GIMP-SRI", "GIMP-SRI-patch"] {
         let [fast, plain] = [Kernel::Fastest, Kernel::PointWise]
             .map(|kernel| solved(slab(method, &soft(), 4, 1), IntegratorKind::Explicit, kernel, rule));
@@ -164,7 +164,7 @@ fn the_assembled_plate_is_tied_whatever_the_velocities_are_mapped_by() {
             let schedule = Schedule {
                 outputs: vec![3e-4 / soft().coefficient_of_consolidation()],
                 history: Vec::new(),
-                rule: TimeStepRule::Stable(0.5),
+                time_step: TimeStep::Stable(0.5),
                 settings: ExplicitSettings {
                     drag: Drag::Implicit,
                     flip,
@@ -194,8 +194,8 @@ fn water_leaves_by_the_drained_side_and_before_the_plate_in_balance() {
     for integrator in [IntegratorKind::Implicit, IntegratorKind::Explicit] {
         let problem = slab("GIMP-SRI", &soft(), 4, 1);
         let rule = match integrator {
-            IntegratorKind::Explicit => TimeStepRule::Stable(0.6),
-            _ => TimeStepRule::Growth(0.01),
+            IntegratorKind::Explicit => TimeStep::Stable(0.6),
+            _ => TimeStep::Growth(0.01),
         };
         let outcome = solved(problem, integrator, Kernel::Fastest, rule);
         let totals = outcome.snapshots[2].totals;
@@ -210,7 +210,7 @@ fn newtons_iteration_ends_with_a_plate_and_gives_what_the_linear_system_does() {
     let calm = implicit(slab("GIMP-SRI", &soft(), 4, 1));
     for formulation in [Formulation::UP, Formulation::VW] {
         let kind = (IntegratorKind::Implicit, formulation);
-        let rule = TimeStepRule::Growth(0.02);
+        let rule = TimeStep::Growth(0.02);
         let outcome = solved_with(slab("GIMP-SRI", &soft(), 4, 1), kind, Kernel::Fastest, rule);
         let (steps, iterations) = (outcome.counters.steps, outcome.counters.iterations);
         assert!(outcome.counters.rejected_steps == 0 && iterations < 12 * steps, "{iterations} in {steps}");

@@ -5,17 +5,17 @@ use crate::kernel::body::Discrete;
 use crate::tests::column_problem;
 use oedometer_problem::method::Method;
 use oedometer_problem::settings::{Drag, ExplicitSettings};
-use oedometer_scenes::SceneKind;
 use oedometer_scenes::column::Column;
+use oedometer_scenes::{AT_REST, Scene, TERZAGHI, XIE_LEO};
 use oedometer_soil::law::Law;
 use oedometer_soil::material::Material;
 
 fn resting(method: &str, configuration: Configuration) -> Discrete<1> {
-    let column = SceneKind::AtRest.default_column();
+    let column = (AT_REST.column)();
     assert!(column.self_weight);
     let method =
         Method { configuration: Some(configuration), ..Method::named(method).expect("a known method") };
-    column_problem::<1>(SceneKind::AtRest, &column, &Material::default(), method, 6, 2).expect("a column")
+    column_problem::<1>(&AT_REST, &column, &Material::default(), method, 6, 2).expect("a column")
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn results_give_the_excess_and_a_settled_surface_lies_under_free_water() {
         let soil = Material { law: Law::LogLinear, ..Material::default() };
         let method =
             Method { configuration: Some(configuration), ..Method::named("GIMP-SRI").expect("known") };
-        let problem = column_problem::<1>(SceneKind::XieLeo, &column, &soil, method, 8, 2).expect("a column");
+        let problem = column_problem::<1>(&XIE_LEO, &column, &soil, method, 8, 2).expect("a column");
         let excess = problem.points.pressure[0];
         let mut body = Body::new(problem);
         let in_excess = body.in_excess().expect("it weighs");
@@ -92,7 +92,7 @@ fn a_point_that_has_sunk_lies_under_more_water() {
         let column = Column { self_weight: true, ..Column::default() };
         let soil = Material { law: Law::LogLinear, ..Material::default() };
         let method = Method { configuration: Some(configuration), ..Method::named("GIMP").expect("known") };
-        let problem = column_problem::<1>(SceneKind::XieLeo, &column, &soil, method, 4, 2).expect("a column");
+        let problem = column_problem::<1>(&XIE_LEO, &column, &soil, method, 4, 2).expect("a column");
         let mut body = Body::new(problem);
         let before = body.hydrostatic_pressure(5);
         body.points.position[5][0] -= 0.1;
@@ -110,15 +110,14 @@ fn a_weight_that_points_integrate_inexactly_is_balanced_at_the_start() {
     for (method, jitter) in [(Method::named("GIMP-SRI").expect("known"), 0.2), (spline, 0.0), (spline, 0.2)] {
         for configuration in [Configuration::Frozen, Configuration::Updated, Configuration::Total] {
             let method = Method { configuration: Some(configuration), ..method };
-            let start = |scene: SceneKind, self_weight: bool, load: f64| {
+            let start = |scene: &'static Scene, self_weight: bool, load: f64| {
                 let mut column = Column { load, self_weight, ..Column::default() };
                 column.points.jitter = jitter;
                 let problem = column_problem::<1>(scene, &column, &Material::default(), method, 8, 2);
                 Body::new(problem.expect("a column"))
             };
             // Only the load leaves points off their lattice unbalanced, with weight as without.
-            let [mut weighing, mut weightless] =
-                [true, false].map(|weighs| start(SceneKind::Terzaghi, weighs, 1.0));
+            let [mut weighing, mut weightless] = [true, false].map(|weighs| start(&TERZAGHI, weighs, 1.0));
             weighing.map_forces();
             weightless.map_forces();
             let pairs = |field: fn(&Body<1>) -> &Vec<Vector<1>>| -> f64 {
@@ -135,7 +134,7 @@ fn a_weight_that_points_integrate_inexactly_is_balanced_at_the_start() {
                 method.basis.name()
             );
             // A column at rest is there to show it: three thousandths of its 21 kPa and more.
-            assert!(start(SceneKind::AtRest, true, 1.0).unbalanced_force() > 60.0);
+            assert!(start(&AT_REST, true, 1.0).unbalanced_force() > 60.0);
         }
     }
 }

@@ -6,15 +6,15 @@ use oedometer_problem::integrator::{Formulation, IntegratorKind};
 use oedometer_problem::method::Method;
 use oedometer_problem::outcome::{Outcome, RunStatus};
 use oedometer_problem::settings::ExplicitSettings;
-use oedometer_problem::time_step::TimeStepRule;
-use oedometer_scenes::SceneKind;
+use oedometer_problem::time_step::TimeStep;
+use oedometer_scenes::FOOTING;
 use oedometer_scenes::column::{Column, Footing, Undrained, column_parameters};
 use oedometer_soil::base::Base;
 use oedometer_soil::material::Material;
 
 /// A run of a footing to settlements over its width.
 fn pushed(column: &Column, soil: &Material, mesh: (&str, usize), settlements: &[f64]) -> Outcome {
-    stepped(column, soil, mesh, settlements, TimeStepRule::Growth(0.1))
+    stepped(column, soil, mesh, settlements, TimeStep::Growth(0.1))
 }
 
 /// The same with steps by a rule.
@@ -23,16 +23,16 @@ fn stepped(
     soil: &Material,
     (method, cells): (&str, usize),
     settlements: &[f64],
-    rule: TimeStepRule,
+    rule: TimeStep,
 ) -> Outcome {
     let method = Method::named(method).expect("a known method");
-    let problem = column_problem::<2>(SceneKind::Footing, column, soil, method, cells, 2).expect("a layer");
+    let problem = column_problem::<2>(&FOOTING, column, soil, method, cells, 2).expect("a layer");
     let parameters = column_parameters(column, soil);
     let schedule = Schedule {
         outputs: settlements.iter().map(|settlement| parameters.time(*settlement)).collect(),
         critical_step: None,
         history: Vec::new(),
-        rule,
+        time_step: rule,
         settings: ExplicitSettings::default(),
         kernel: Kernel::Fastest,
         integrator: IntegratorKind::Implicit,
@@ -47,7 +47,7 @@ fn stepped(
 
 /// Load factors of the outputs of a run on the seed soil.
 fn load_factors(column: &Column, method: &str, cells: usize) -> Vec<f64> {
-    let soil = SceneKind::Footing.default_material();
+    let soil = (FOOTING.soil)();
     let outcome = pushed(column, &soil, (method, cells), &[0.02, 0.05]);
     let half = 0.5 * column.footing.width * soil.undrained_strength;
     outcome.snapshots.iter().map(|snapshot| snapshot.plate_force.expect("a plate") / half).collect()
@@ -58,7 +58,7 @@ fn a_plate_over_the_whole_layer_strains_it_uniaxially_as_the_closed_form_says() 
     // The plate, three cells wide, covers the layer and a node beyond it: an oedometer without water.
     let footing = Footing { width: 1.0, contact: Base::Smooth, ..Footing::default() };
     let column = Column { footing, height: 1.0, ..Column::under_footing().with_extent(1.0 / 3.0) };
-    let soil = Material { poissons_ratio: 0.3, ..SceneKind::Footing.default_material() };
+    let soil = Material { poissons_ratio: 0.3, ..(FOOTING.soil)() };
     let (bulk, shear) = (soil.stiffness().bulk(), soil.stiffness().shear);
     for method in ["GIMP", "GIMP-SRI", "GC-SRI-patch"] {
         let settlements = [5e-4, 2e-3, 1e-2];
@@ -99,7 +99,7 @@ fn undrained_soil_of_two_phases_bears_the_load_of_total_stress() {
     let column = Column::under_footing();
     let footing = Footing { undrained: Undrained::TwoPhase, ..column.footing };
     let wet = Column { footing, ..column };
-    let soil = Material { poissons_ratio: 0.3, ..SceneKind::Footing.default_material() };
+    let soil = Material { poissons_ratio: 0.3, ..(FOOTING.soil)() };
     let half = 0.5 * soil.undrained_strength;
     let load = |method: &str| {
         let outcome = pushed(&wet, &soil, (method, 4), &[0.05]);
@@ -118,9 +118,9 @@ fn undrained_soil_of_two_phases_bears_the_load_of_total_stress() {
 #[test]
 fn a_step_that_does_not_converge_is_halved_and_ends_where_small_steps_do() {
     let column = Column::under_footing();
-    let soil = SceneKind::Footing.default_material();
-    let single_step = TimeStepRule::Seconds(column_parameters(&column, &soil).time(0.05));
-    let [single, small] = [single_step, TimeStepRule::Growth(0.1)]
+    let soil = (FOOTING.soil)();
+    let single_step = TimeStep::Seconds(column_parameters(&column, &soil).time(0.05));
+    let [single, small] = [single_step, TimeStep::Growth(0.1)]
         .map(|rule| stepped(&column, &soil, ("GIMP-SRI", 4), &[0.05], rule));
     assert!(
         single.counters.rejected_steps > 0 && small.counters.rejected_steps == 0,
