@@ -3,7 +3,7 @@
 
 use crate::campaign::refinement::{Refinement, halvings, steps_of};
 use crate::case::contender::{CONTENDERS, Contender};
-use crate::case::{Quantity, Sample, Task, step_label};
+use crate::case::{Quantity, Sample, Task};
 use crate::judge::paths::first_error;
 use crate::measure::statistics::median;
 use crate::race::finish::{Arrival, Budget, Level, RaceQuantity, Reason, Terms, arrival, reason_of};
@@ -13,7 +13,7 @@ use crate::record::{Record, Status};
 use crate::study::check::Study;
 use oedometer_problem::method::Configuration;
 use oedometer_problem::wave_speeds;
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::scene::Question;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -68,7 +68,7 @@ impl Situation {
         let case = &records.first().filter(|_| study.is_race)?.case;
         let name = study.name.strip_prefix("race-").unwrap_or(&study.name);
         let moves = study.scene.configuration() == Configuration::Updated;
-        let is_property = study.scene.is_at_rest() || case.task == Task::Stability;
+        let is_property = study.scene.question == Question::Rest || case.task == Task::Stability;
         // Where nothing moves a mesh that follows is the same mesh.
         let runs = |one: &&Contender| moves || is_property || !one.is_total();
         let mut situation = Self {
@@ -141,7 +141,7 @@ fn entry(study: &Study, contender: &Contender, records: &[Record]) -> Entry {
         step_ratio: finest.and_then(step_ratio_of),
         asymmetry: finest.and_then(|record| record.stability.as_ref()?.asymmetry),
         spurious_velocity: finest
-            .filter(|record| record.case.scene.is_at_rest())
+            .filter(|record| record.case.scene.question == Question::Rest)
             .and_then(spurious_velocity_of),
     }
 }
@@ -168,7 +168,7 @@ fn level(runs: &[&Record]) -> Level {
     let seconds: Vec<f64> = runs[0].wall.iter().filter_map(|sample| sample.cpu_seconds).collect();
     Level {
         cells: runs[0].case.cells,
-        step: step_label(&runs[0].case.time_step),
+        step: runs[0].case.time_step.to_string(),
         cost: cost_of(runs[0]),
         seconds: median(&seconds),
         errors: RunErrors::of(runs[0]),
@@ -201,8 +201,8 @@ fn load_error(record: &Record) -> Option<f64> {
 /// own, in a layer of water and soil that hardly compress one minus the error of its displacement.
 fn stiffness_of(record: &Record) -> Option<f64> {
     match record.case.scene {
-        SceneKind::Footing => Some(1.0 / (1.0 + load_error(record)?)),
-        scene if scene.shows_locking() => settlement_ratio(record).or_else(|| displacement_kept(record)),
+        scene if scene.measures(Quantity::LoadFactor) => Some(1.0 / (1.0 + load_error(record)?)),
+        scene if scene.locks => settlement_ratio(record).or_else(|| displacement_kept(record)),
         _ => settlement_ratio(record).filter(|_| record.status == Status::Ok),
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::{Case, SolverName};
 use oedometer_problem::method::{Basis, Configuration, Method, Recovery};
-use oedometer_scenes::SceneKind;
+use oedometer_scenes::scene::Clock;
 use std::sync::LazyLock;
 
 /// The word that stands for all contenders among the methods of a sweep.
@@ -65,8 +65,10 @@ impl Contender {
     /// Why it does not race in a case: a limit of how this program has it, that would be judged instead of the method.
     pub fn unfit(&self, case: &Case) -> Option<&'static str> {
         let is_spline = matches!(self.method.basis, Basis::Bspline2 | Basis::Bspline3);
-        match case.scene {
-            SceneKind::StandingWave | SceneKind::DynamicColumn if self.method.recovery == Recovery::Ppp => {
+        match case.scene.clock {
+            Clock::Wave | Clock::Consolidation
+                if case.scene.waves && self.method.recovery == Recovery::Ppp =>
+            {
                 Some(
                     "the published parameter of the projection is quasi-static (White & Borja 2008): its storage slows waves",
                 )

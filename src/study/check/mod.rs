@@ -27,7 +27,7 @@ use oedometer_problem::integrator::Formulation;
 use oedometer_problem::method::Configuration;
 use oedometer_scenes::Scene;
 use oedometer_scenes::column::Column;
-use oedometer_scenes::scene::LoadKind;
+use oedometer_scenes::scene::{LoadKind, Question};
 use std::ops::Range;
 
 /// What a study is read for.
@@ -252,7 +252,7 @@ impl Checker<'_> {
             self.for_each_entry(table, |checker, entry| {
                 // Where nothing moves a mesh that follows the soil is the same mesh.
                 let moves = scene.configuration() == Configuration::Updated || base.task == Task::Stability;
-                if entry.is_some_and(Contender::is_total) && !moves && !scene.is_at_rest() {
+                if entry.is_some_and(Contender::is_total) && !moves && scene.question != Question::Rest {
                     return;
                 }
                 let before = checker.diagnostics.len();
