@@ -1,6 +1,5 @@
 //! Labels of paths that stand side by side: what differs, and what all share.
 
-use crate::case::step_label;
 use crate::judge::paths::Path;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,7 +27,7 @@ pub fn path_labels(paths: &[Path<'_>]) -> PathLabels {
     let alike = |own: &Vec<String>| parts.iter().filter(|other| *other == own).count() > 1;
     let alike: Vec<bool> = parts.iter().map(alike).collect();
     for ((own, path), _) in parts.iter_mut().zip(paths).zip(alike).filter(|(_, is_alike)| *is_alike) {
-        own.push(step_label(&path.records[0].case.time_step));
+        own.push(path.records[0].case.time_step.to_string());
     }
     let mut paths_with: BTreeMap<&str, usize> = BTreeMap::new();
     for own in &parts {

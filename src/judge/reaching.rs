@@ -1,12 +1,12 @@
 //! Which runs may be recommended for a tolerance: those on a mesh from which all finer ones stay within it.
 
 use crate::case::grouping::grouped;
-use crate::case::{Case, step_label};
+use crate::case::Case;
 use crate::judge::case_verdicts::recommendable;
 use crate::record::Record;
 use crate::record::reached::reached;
 use crate::study::expectation::CaseExpectation;
-use oedometer_problem::time_step::TimeStepRule;
+use oedometer_problem::time_step::TimeStep;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Runs with an error each, where it may be quoted.
@@ -88,8 +88,8 @@ fn on_any_mesh(case: &Case) -> u64 {
 /// The rule of the steps; steps given in seconds follow the mesh.
 fn rule_of(case: &Case) -> String {
     match case.time_step {
-        TimeStepRule::Seconds(_) => String::new(),
-        rule => step_label(&rule),
+        TimeStep::Seconds(_) => String::new(),
+        rule => rule.to_string(),
     }
 }
 
@@ -105,7 +105,7 @@ mod tests {
     fn reaching(errors: [[f64; 2]; 3], change: impl Fn(&mut Record)) -> [Vec<String>; 2] {
         let mut records = records_of(STUDY);
         records.iter_mut().for_each(change);
-        let step = |record: &Record| usize::from(record.case.time_step == TimeStepRule::Growth(0.2));
+        let step = |record: &Record| usize::from(record.case.time_step == TimeStep::Growth(0.2));
         let error = |record: &Record| Some(errors[record.case.cells.ilog2() as usize - 1][step(record)]);
         records.retain(|record| error(record).is_some_and(f64::is_finite));
         let found = QuotedRuns::new(&records, &[], error).reaching(0.01);

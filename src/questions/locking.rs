@@ -41,7 +41,7 @@ struct Facts {
 /// The study that sweeps Poisson's ratio with most methods, the first of equals, answers.
 fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
     let most = best(studies, |one| {
-        if !one.study.scene.shows_locking() {
+        if !one.study.scene.locks {
             return Ok(None);
         }
         let sweep = StiffnessSweep::of(one.study, one.records, SweptStiffness::Skeleton)?;

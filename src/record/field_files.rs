@@ -4,6 +4,7 @@
 use crate::case::Case;
 use crate::record::Record;
 use oedometer_problem::snapshot::Snapshot;
+use oedometer_scenes::scene::Body;
 use std::fmt::{Display, Write};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -41,7 +42,7 @@ pub fn write_fields(record: &Record, folder: &Path) -> io::Result<PathBuf> {
 /// The mapping with which `score` reads the files.
 fn meaning_of(case: &Case) -> String {
     // A slab moves along x, a column along y.
-    let (is_slab, is_plane) = (case.scene.has_plates(), case.scene.has_plane_fields());
+    let (is_slab, is_plane) = (case.scene.body == Body::Slab, case.scene.body.is_plane());
     let columns = match (is_slab, is_plane) {
         (true, _) => ["x", "u_x"].as_slice(),
         (false, true) => &["x", "u_x", "u_y"],
@@ -56,7 +57,7 @@ fn meaning_of(case: &Case) -> String {
          p = \"p\"\n{names}effective_stress = \"effective_stress\"\nvolume = \"volume\"\n\n[units]\nlength = \"m\"\n\
          displacement = \"m\"\nstress = \"Pa\"\n\n[sign]\ny = \"up\"\np = \"compression-positive\"\n{senses}\
          effective_stress = \"tension-positive\"\n",
-        case.scene.name()
+        case.scene.name
     )
 }
 
@@ -71,7 +72,7 @@ fn vtu_of(case: &Case, state: &Snapshot) -> String {
         .as_ref()
         .map_or([&zeros, &zeros], |plane| [&plane.initial_distance, &plane.horizontal_displacement]);
     // A slab drains along x.
-    if case.scene.has_plates() {
+    if case.scene.body == Body::Slab {
         (up, across) = (across, up);
     }
     let place = |point: usize| {

@@ -7,10 +7,14 @@ use crate::case::keys::{KEYS, Key, Kind, Range, Value};
 use crate::case::{Case, Task};
 use crate::cli::commands::schema::{Document, schema_of};
 use crate::record::csv::long_tables::columns_csv;
+use oedometer_problem::formulation::Formulation;
+use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::method::Method;
+use oedometer_problem::quantity::Quantity;
 use oedometer_scenes::{COSINE_LAYER, MANUFACTURED_BOX, SCENES, Scene, TERZAGHI};
 use oedometer_soil::wording::typed;
 use serde_json::Value as Json;
+use crate::tests::assert_snapshot;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::fs;
@@ -255,4 +259,58 @@ fn the_tables_of_the_manual_are_those_of_the_code() {
     {
         assert!(names.contains(name), "{name} is on no page");
     }
+}
+
+/// A default that a scene takes over is seen here.
+#[test]
+fn scenes_with_all_their_fields() {
+    fn names<T: Copy>(list: &[T], name: impl Fn(T) -> &'static str) -> String {
+        list.iter().copied().map(name).collect::<Vec<_>>().join(", ")
+    }
+    let mut text = String::new();
+    for scene in SCENES {
+        let (column, soil) = ((scene.column)(), (scene.soil)());
+        let flags = [
+            (scene.waves, "waves"),
+            (scene.locks, "locks"),
+            (scene.sealed, "sealed"),
+            (scene.motion.is_some(), "motion"),
+            (scene.start_is_solved(), "start solved"),
+            (scene.final_settlement.is_some(), "final settlement"),
+        ];
+        let flags: Vec<&str> = flags.into_iter().filter_map(|(is_so, word)| is_so.then_some(word)).collect();
+        let references = scene.references.iter().map(|reference| {
+            let differs = (reference.differs)(&soil).map_or(String::new(), |what| format!(" without {what}"));
+            let growing = if reference.holds_growing { "" } else { ", of sudden loads" };
+            format!("{}{differs}{growing}", reference.kind.name())
+        });
+        let references: Vec<String> = references.collect();
+        let methods: Vec<&str> = scene.methods.iter().map(|limit| limit.why).collect();
+        let limits: Vec<String> =
+            scene.limits.iter().map(|limit| format!("{}: {} ({})", limit.key, limit.why, limit.instead)).collect();
+        let unjudged: Vec<String> =
+            scene.unjudged.iter().map(|(check, why)| format!("{check:?}: {why}")).collect();
+        let outputs = (scene.outputs)(&column, &soil);
+        let lines = [
+            ("axes", scene.axes.to_owned()),
+            ("question, clock", format!("{:?}, {:?}", scene.question, scene.clock)),
+            ("body, strain, load", format!("{:?}, {:?}, {:?}", scene.body, scene.strain, scene.load)),
+            ("has", flags.join(", ")),
+            ("takes", scene.takes.join(", ")),
+            ("law", soil.law.name().to_owned()),
+            ("integrators", names(scene.integrators.list, IntegratorKind::name)),
+            ("formulations", names(scene.formulations.list, Formulation::name)),
+            ("outputs", format!("{outputs:?}")),
+            ("references", references.join("; ")),
+            ("quantities", names(scene.quantities, Quantity::name)),
+            ("not judged", unjudged.join("; ")),
+            ("methods refused", methods.join("; ")),
+            ("limits", limits.join("; ")),
+        ];
+        let _ = writeln!(text, "{}: {}", scene.name, scene.summary);
+        for (what, said) in lines.into_iter().filter(|(_, said)| !said.is_empty()) {
+            let _ = writeln!(text, "    {what}: {said}");
+        }
+    }
+    assert_snapshot("scenes_with_all_their_fields", &text);
 }

@@ -39,7 +39,7 @@ const PROBLEM: Order = Order {
 };
 const SCENES: Order = Order {
     root: "crates/scenes/src",
-    floors: "column definition columns plane manufactured scene problem",
+    floors: "column limit scene manufactured * named problem",
     circles: &[],
     licensed: &[],
 };
@@ -178,7 +178,7 @@ fn no_source_uses_one_above_it_or_in_a_circle() {
             ],
         ),
         (PROBLEM, &[("integrator", "time_step")]),
-        (SCENES, &[("scene", "columns")]),
+        (SCENES, &[("scene", "limit"), ("footing", "limit")]),
         (
             MPM,
             &[

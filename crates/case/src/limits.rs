@@ -4,6 +4,7 @@ use crate::{Case, Task};
 use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::method::{Basis, Configuration, Memory};
 use oedometer_problem::time_step::TimeStep;
+use oedometer_scenes::Scene;
 use oedometer_scenes::limit::{Limit, Setup};
 use oedometer_scenes::scene::{Body, LoadKind, Question};
 use oedometer_soil::conductivity::ConductivityMean;
@@ -34,10 +35,10 @@ impl Case {
             });
             return refusal.into_iter().collect::<Vec<_>>().into_iter();
         };
-        let rows = setup.scene.limits.iter().chain(LIMITS).filter(|limit| (limit.refuses)(&setup));
+        let rows = case.scene.limits.iter().chain(LIMITS).filter(|limit| (limit.refuses)(&setup));
         let two_sets = TWO_SETS.iter().filter(|_| setup.column.points.has_two_sets());
-        let missed = two_sets.filter(|(refuses, ..)| refuses(&setup)).take(1);
-        let mut refusals = choices_outside_lists(&setup);
+        let missed = two_sets.filter(|(refuses, ..)| refuses(case.scene, &setup)).take(1);
+        let mut refusals = choices_outside_lists(case.scene, &setup);
         refusals.extend(rows.map(|limit| Refusal { key: limit.key, why: limit.why, help: limit.instead }));
         refusals.extend(missed.map(|(_, why, help)| Refusal { key: "sets", why, help }));
         refusals.into_iter()
@@ -47,7 +48,6 @@ impl Case {
     fn setup(&self) -> Option<Setup<'_>> {
         let method = self.method.built_in()?;
         Some(Setup {
-            scene: self.scene,
             column: &self.column,
             soil: &self.material,
             method,
@@ -63,8 +63,8 @@ impl Case {
 }
 
 /// Steps, integrators and formulations that are not in the lists of scene and integrator.
-fn choices_outside_lists(it: &Setup<'_>) -> Vec<Refusal> {
-    let Setup { scene, integrator, formulation, .. } = it;
+fn choices_outside_lists(scene: &Scene, it: &Setup<'_>) -> Vec<Refusal> {
+    let Setup { integrator, formulation, .. } = it;
     let by_integrator = "give each integrator a [[sweep]] block of its own, or leave `formulation` out";
     let [integrators, formulations] = [
         (!scene.integrators.has(integrator)).then_some((scene.integrators.why, scene.integrators.instead)),
@@ -155,32 +155,32 @@ static LIMITS: &[Limit] = &[
 ];
 
 /// A condition of two point sets that is missed, what it says, and what would be right.
-type Missed = (fn(&Setup<'_>) -> bool, &'static str, &'static str);
+type Missed = (fn(&Scene, &Setup<'_>) -> bool, &'static str, &'static str);
 
 /// What two point sets need; the first that is missed is named.
 static TWO_SETS: &[Missed] = &[
     (
-        |it| it.integrator != IntegratorKind::Explicit,
+        |_, it| it.integrator != IntegratorKind::Explicit,
         "double-point MPM is integrated explicitly only",
         "take the integrator \"explicit\", or `sets = 1`",
     ),
     (
-        |it| it.configuration == Configuration::Total,
+        |_, it| it.configuration == Configuration::Total,
         "shape functions on the initial configuration stay with the skeleton, and a second point set does not",
         "take a method without the prefix TL-, or `sets = 1`",
     ),
     (
-        |it| it.method.has_projection(),
+        |_, it| it.method.has_projection(),
         "the projection needs pressures at the points of the skeleton",
         "take the method \"VP\", or `sets = 1`",
     ),
     (
-        |it| it.method.memory == Memory::Cells && it.configuration != Configuration::Frozen,
+        |_, it| it.method.memory == Memory::Cells && it.configuration != Configuration::Frozen,
         "cell averages need points that carry both phases, and here are two point sets",
         "take a method without the suffix -cells, or `sets = 1`",
     ),
     (
-        |it| {
+        |_, it| {
             it.configuration == Configuration::Updated
                 && !matches!(it.method.basis, Basis::Cpgimp | Basis::Cpdi)
         },
@@ -188,32 +188,32 @@ static TWO_SETS: &[Missed] = &[
         "take the basis \"cpgimp\" or \"cpdi\", or `sets = 1`",
     ),
     (
-        |it| it.scene.body == Body::Slab,
+        |scene, _| scene.body == Body::Slab,
         "a rigid plate is tied to one point set",
         "take another scene, or `sets = 1`",
     ),
     (
-        |it| it.scene.load == LoadKind::Pushed,
+        |scene, _| scene.load == LoadKind::Pushed,
         "the water under a footing stays with its soil",
         "take another scene, or `sets = 1`",
     ),
     (
-        |it| it.scene.question == Question::Layers && it.scene.takes("soils") || !it.column.soils.is_empty(),
+        |scene, it| scene.question == Question::Layers && scene.takes("soils") || !it.column.soils.is_empty(),
         "two point sets take one soil",
         "take another scene, or `sets = 1`",
     ),
     (
-        |it| it.column.self_weight,
+        |_, it| it.column.self_weight,
         "the weight of a column needs points that carry both phases",
         "leave `self_weight` out, or take `sets = 1`",
     ),
     (
-        |it| it.soil.conductivity_mean == ConductivityMean::Chord,
+        |_, it| it.soil.conductivity_mean == ConductivityMean::Chord,
         "the chord mean is taken over points that carry both phases",
         "take `conductivity_mean = \"points\"`, or `sets = 1`",
     ),
     (
-        |it| it.column.points.jitter != 0.0 || it.column.points.offset != 0.0,
+        |_, it| it.column.points.jitter != 0.0 || it.column.points.offset != 0.0,
         "shifted domains of the water do not end where the soil does",
         "leave `offset` and `jitter` out, or take `sets = 1`",
     ),
@@ -226,7 +226,7 @@ mod tests {
     use oedometer_problem::method::Method;
     use oedometer_problem::settings::Drag;
     use oedometer_scenes::column::Undrained;
-    use oedometer_scenes::{DYNAMIC_COLUMN, FOOTING, LAYERED, SEALED_ELEMENT, Scene, TERZAGHI, XIE_LEO};
+    use oedometer_scenes::{DYNAMIC_COLUMN, FOOTING, LAYERED, SEALED_ELEMENT, TERZAGHI, XIE_LEO};
     use oedometer_soil::layers::{SoilLayer, SoilLayers};
 
     #[test]

@@ -80,23 +80,6 @@ impl TimeStep {
         }]
     }
 
-    /// Its number.
-    pub fn number(&self) -> f64 {
-        match *self {
-            Self::Stable(number)
-            | Self::Courant(number)
-            | Self::Seconds(number)
-            | Self::Growth(number)
-            | Self::Tolerance(number) => number,
-        }
-    }
-
-    /// The rule of the same kind with another number.
-    #[must_use]
-    pub fn with_number(self, number: f64) -> Self {
-        (self.kind().make)(number)
-    }
-
     /// Its number: of two rules of a kind the larger one takes the longer steps.
     pub fn number(self) -> f64 {
         let (Self::Stable(number)
@@ -105,6 +88,12 @@ impl TimeStep {
         | Self::Growth(number)
         | Self::Tolerance(number)) = self;
         number
+    }
+
+    /// The rule of the same kind with another number.
+    #[must_use]
+    pub fn with_number(self, number: f64) -> Self {
+        (self.kind().make)(number)
     }
 
     /// The step, s, that it asks for at first.

@@ -1,7 +1,6 @@
 //! What cannot be together: rows of a scene, and of all scenes.
 
 use crate::column::Column;
-use crate::scene::Scene;
 use oedometer_problem::formulation::Formulation;
 use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::method::{Configuration, Method};
@@ -23,8 +22,6 @@ pub struct Limit {
 
 /// A case as limits see it: solved by a method of this program.
 pub struct Setup<'a> {
-    /// Scene.
-    pub scene: &'static Scene,
     /// Geometry and load.
     pub column: &'a Column,
     /// Soil.

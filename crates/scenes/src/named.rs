@@ -1,6 +1,6 @@
 //! Scenes by their names: in files a scene is a word.
 
-use crate::scene::{Scene, StartOf, StartPressure};
+use crate::scene::{LoadKind, Scene, StartPressure};
 use crate::{NAMES, SCENES, TERZAGHI};
 use oedometer_exact::reference::ReferenceKind;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -15,7 +15,7 @@ impl Scene {
     }
 
     /// The scene in whose words the parameters of a solution are given at the command line: that of Terzaghi where none is
-    /// about it, or takes its start from it.
+    /// about it, or all that acts is a start taken from it.
     pub fn of_solution(kind: ReferenceKind) -> &'static Self {
         let is_alike = |own: ReferenceKind| match (own, kind) {
             (ReferenceKind::LargeStrain(_), ReferenceKind::LargeStrain(_)) => true,
@@ -25,10 +25,7 @@ impl Scene {
             _ => own == kind,
         };
         let has_words = |scene: &Self| {
-            !matches!(
-                (&scene.start, &scene.start_pressure),
-                (StartOf::OverDepth(_), StartPressure::OfReference)
-            )
+            !matches!((scene.load, &scene.start_pressure), (LoadKind::None, StartPressure::OfReference))
         };
         let scenes = || SCENES.into_iter().filter(|scene| has_words(scene));
         let own = scenes().find(|scene| is_alike(scene.references[0].kind));

@@ -259,7 +259,7 @@ const ALL: &str = "";
 
 impl Scene {
     /// A column without load, at rest and at small strain. A scene names how it differs from this or from
-    /// [`LOADED`](Self::LOADED); `all_scenes_and_their_fields` of the documentation shows every field of all.
+    /// [`LOADED`](Self::LOADED); the snapshot `scenes_with_all_their_fields` shows every field of all.
     pub(crate) const COLUMN: Self = Self {
         name: "",
         summary: "",

@@ -9,7 +9,7 @@ use crate::study::shipped::{shipped_names, shipped_study, shipped_titles};
 use oedometer_exact::{ReferenceKind, ShelfProblem};
 use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::method::Method;
-use oedometer_scenes::SCENES;
+use oedometer_scenes::{SCENES, Scene};
 use std::fmt::Write;
 
 /// Arguments of `list`.
@@ -74,11 +74,11 @@ fn show(name: &str) -> anyhow::Result<Exit> {
         print_data(&study.text)?;
         return Ok(Exit::Pass);
     }
-    if let Some(scene) = SceneKind::ALL.into_iter().find(|scene| scene.name() == name) {
+    if let Some(scene) = Scene::named(name) {
         print_data(&scene_in_words(scene))?;
         return Ok(Exit::Pass);
     }
-    let scenes = SceneKind::ALL.map(|scene| scene.name().to_owned());
+    let scenes = SCENES.map(|scene| scene.name.to_owned());
     let names: Vec<String> = shipped_names().into_iter().chain(Method::names()).chain(scenes).collect();
     let near = nearest(name, names.iter().map(String::as_str));
     let help =
@@ -87,9 +87,9 @@ fn show(name: &str) -> anyhow::Result<Exit> {
 }
 
 /// A scene in words, with its exact solutions, and how to write it in a study.
-fn scene_in_words(scene: SceneKind) -> String {
-    let (name, summary) = (scene.name(), scene.summary());
-    let solutions: Vec<&str> = scene.references().iter().map(|kind| kind.name()).collect();
+fn scene_in_words(scene: &Scene) -> String {
+    let (name, summary) = (scene.name, scene.summary);
+    let solutions: Vec<&str> = scene.reference_kinds().into_iter().map(ReferenceKind::name).collect();
     let solutions = if solutions.is_empty() { "none".to_owned() } else { solutions.join(", ") };
     format!("{name}\n\n  {summary}\n\nexact solutions: {solutions}\nin a study: scene = \"{name}\"\n")
 }

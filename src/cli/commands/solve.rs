@@ -3,6 +3,7 @@
 use crate::campaign::case_run::{ThisProgram, all_cores};
 use crate::campaign::endless::refuse_endless;
 use crate::campaign::runner::LongestCase;
+use crate::case::{Case, Quantity};
 use crate::case::outcome::{Course, Solver};
 use crate::case::planned::{PlannedCase, Tier};
 use crate::cli::exit::{Ended, Exit};

@@ -242,7 +242,7 @@ mod tests {
     use crate::campaign::runner::records_of;
     use crate::record::WallSample;
     use oedometer_problem::outcome::{Failure, FailureKind};
-    use oedometer_problem::time_step::TimeStepRule;
+    use oedometer_problem::time_step::TimeStep;
 
     const STUDY: &str = r#"title = "Costs"
 scene = "terzaghi"
@@ -363,7 +363,7 @@ time_step = [{ growth = 0.005 }]
         let at = |error: f64| {
             let mut record = with([Some(9.0), Some(error), Some(error), Some(error)]);
             // Steps by a rule of its own, so that none is a part of another's refinement.
-            record.case.time_step = TimeStepRule::Growth(error);
+            record.case.time_step = TimeStep::Growth(error);
             record.hash = record.case.hash();
             record
         };

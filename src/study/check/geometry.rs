@@ -376,7 +376,7 @@ impl Checker<'_> {
     /// height of hundreds of metres, and a bound of 100 %.
     pub(super) fn units_are_meant(&mut self, file: &StudyFile, planned: &[PlannedCase]) {
         let Some(case) = planned.first().map(|planned| &planned.case) else { return };
-        if case.scene.is_manufactured() {
+        if case.scene.motion.is_some() {
             return;
         }
         let plain = |inputs: &Inputs, key: &str| {

@@ -232,7 +232,7 @@ fn splines_of_cells_with_one_point_carry_the_load() {
         let of_method = Method::named(method).expect("a known method");
         let settlement = |points: usize| {
             let (column, soil) = (Column::default(), Material::default());
-            let problem = column_problem::<1>(SceneKind::Terzaghi, &column, &soil, of_method, 10, points);
+            let problem = column_problem::<1>(&TERZAGHI, &column, &soil, of_method, 10, points);
             implicit(problem.expect("a column"), 0.02, &[0.2]).snapshots[0].settlement
         };
         let (one, two) = (settlement(1), settlement(2));
