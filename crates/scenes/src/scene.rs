@@ -394,11 +394,13 @@ impl Scene {
                     .to_owned()
             });
         }
-        let own = |scene: &&'static Self| matches!(scene.laws, Laws::Only(only) if only == law);
-        match (self.laws, crate::SCENES.into_iter().find(own)) {
-            (Laws::Only(only), _) if only == law => None,
-            (Laws::Only(only), _) => Some(only_of(self, only)),
-            (_, Some(scene)) => Some(only_of(scene, law)),
+        // A law that belongs to one scene without it, or that scene without its law.
+        let broken = crate::SCENES.into_iter().find_map(|scene| match scene.laws {
+            Laws::Only(only) if (only == law) != (scene == self) => Some(only_of(scene, only)),
+            _ => None,
+        });
+        match (self.laws, broken) {
+            (_, Some(told)) => Some(told),
             (Laws::OfColumns, _) if !law.is_for_columns() => Some(
                 "this law has no closed form in a column: it belongs to the manufactured scenes".to_owned(),
             ),
