@@ -1,7 +1,7 @@
 //! Which runs may be recommended for a tolerance: those on a mesh from which all finer ones stay within it.
 
-use crate::case::grouping::grouped;
 use crate::case::Case;
+use crate::case::grouping::grouped;
 use crate::judge::case_verdicts::recommendable;
 use crate::record::Record;
 use crate::record::reached::reached;

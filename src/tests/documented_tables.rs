@@ -7,6 +7,7 @@ use crate::case::keys::{KEYS, Key, Kind, Range, Value};
 use crate::case::{Case, Task};
 use crate::cli::commands::schema::{Document, schema_of};
 use crate::record::csv::long_tables::columns_csv;
+use crate::tests::assert_snapshot;
 use oedometer_problem::formulation::Formulation;
 use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::method::Method;
@@ -14,7 +15,6 @@ use oedometer_problem::quantity::Quantity;
 use oedometer_scenes::{COSINE_LAYER, MANUFACTURED_BOX, SCENES, Scene, TERZAGHI};
 use oedometer_soil::wording::typed;
 use serde_json::Value as Json;
-use crate::tests::assert_snapshot;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::fs;
@@ -286,8 +286,11 @@ fn scenes_with_all_their_fields() {
         });
         let references: Vec<String> = references.collect();
         let methods: Vec<&str> = scene.methods.iter().map(|limit| limit.why).collect();
-        let limits: Vec<String> =
-            scene.limits.iter().map(|limit| format!("{}: {} ({})", limit.key, limit.why, limit.instead)).collect();
+        let limits: Vec<String> = scene
+            .limits
+            .iter()
+            .map(|limit| format!("{}: {} ({})", limit.key, limit.why, limit.instead))
+            .collect();
         let unjudged: Vec<String> =
             scene.unjudged.iter().map(|(check, why)| format!("{check:?}: {why}")).collect();
         let outputs = (scene.outputs)(&column, &soil);

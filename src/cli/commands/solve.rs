@@ -3,9 +3,9 @@
 use crate::campaign::case_run::{ThisProgram, all_cores};
 use crate::campaign::endless::refuse_endless;
 use crate::campaign::runner::LongestCase;
-use crate::case::{Case, Quantity};
 use crate::case::outcome::{Course, Solver};
 use crate::case::planned::{PlannedCase, Tier};
+use crate::case::{Case, Quantity};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{SolveFormat, csv_of, json_of, print_data, say};
 use crate::cli::progress::note_on_solve;
