@@ -11,6 +11,7 @@ from collections import defaultdict
 TIE, NEARLY, RESAMPLES, INSIDE = 0.03, 2.0, 2000, 0.9
 TAUS = [1.0, 1.3, 2.0, 5.0, 10.0, 100.0, 1000.0]
 GROUPS, READOUTS = ["moving", "rest", "total"], ["points", "centres"]
+PLACES = {"points": "at the points", "centres": "as means of cells"}
 OTHER = {"budget": ["cost_half_budget", "cost_twice_budget"],
          "tolerance": ["cost_half_percent", "cost_2_percent", "cost_5_percent"]}
 
@@ -86,6 +87,34 @@ def holds(race, group, readout, method):
     }
 
 
+def leader(race, readout):
+    """Who reaches 1 % most often of all methods in all problems, in how many it is the cheapest, and its largest multiple of the least work."""
+    problems = defaultdict(dict)
+    for row in race.rows:
+        if (row["readout"], row["time"]) == (readout, "all"):
+            problems[row["situation"]][row["method"]] = row["cost_1_percent"]
+    ratios = defaultdict(list)
+    for costs in problems.values():
+        reached = {method: cost for method, cost in costs.items() if cost is not None}
+        for method, cost in reached.items():
+            ratios[method].append(cost / min(reached.values()))
+    method = min((one for one in ratios if not one.startswith("TL-")), key=lambda one: (-len(ratios[one]), max(ratios[one])))
+    return {"readout": readout, "method": method, "reached": len(ratios[method]), "of": len(problems),
+            "cheapest": sum(one <= 1 for one in ratios[method]), "dearest": max(ratios[method])}
+
+
+def family_answers(race, group, readout):
+    """Per family of a group the methods that tie for the best, how many problems the first reaches, and the range of the least work."""
+    table, out = race.table(group, readout), {}
+    for family in dict.fromkeys(family for family, _ in table):
+        rows = [(one, costs) for one, costs in table if one == family]
+        least = [min(reached) for reached in ([c for c in costs.values() if c is not None] for _, costs in rows) if reached]
+        names = set(best(rows)[0])
+        counts = {name: sum(costs[name] is not None for _, costs in rows) for name in names}
+        out[family] = (names, max(counts.values(), default=0), len(rows), [min(least), max(least)] if least else None)
+    return out
+
+
 def count_methods(race, group):
     return {row["method"] for row in race.rows if row["group"] == group}
 
@@ -107,6 +136,16 @@ def main(folder, turn):
     text = json.load(open(f"{folder}/findings.json", encoding="utf-8"))
     choice = [one["facts"] for one in text.get("findings", []) if one["question"] == "choice"] or [text]
     told = choice[0]["answers"]
+    for one in choice[0].get("leaders", []):
+        ours = leader(race, one["readout"])
+        for key, value in ours.items():
+            same(f"leader {one['readout']} {key}", value, one[key])
+    for one in choice[0].get("families", []):
+        where = f"family {one['family']}, {one['group']}, {one['readout']}"
+        names, reached, of, work = family_answers(race, one["group"], one["readout"])[one["family"]]
+        same(f"{where}: methods", sorted(names), sorted(one["methods"]))
+        same(f"{where}: counts", [reached, of], [one["reached"], one["of"]])
+        same(f"{where}: work", work or [], one["work"] or [])
     page = open(f"{folder}/README.md", encoding="utf-8").read()
     for group in GROUPS:
         for readout in READOUTS:
@@ -127,18 +166,17 @@ def main(folder, turn):
                 alike = lambda other: all(a[0] <= b[1] and b[0] <= a[1] for a, b in zip(inside[method], inside[other]))
                 same(f"{where}: alike", sorted(m for m in inside if m != method and alike(m)), sorted(one["alike"]))
             if answers:
-                first, count = answers[0], both[names[0]]
-                methods = "`, `".join(names)
-                verb = "reaches" if len(names) == 1 else "are equally good; the first reaches"
+                first, more = answers[0], len(names) - 3
+                listed = ", ".join(f"`{name}`" for name in names[:3])
+                listed += f" and {more} other{'s' if more > 1 else ''}" if more > 0 else ""
                 problems = "problem" if first["of"] == 1 else "problems"
-                same(f"{group}, {readout}: sentence", True, (
-                    f"`{methods}` {verb} 1 % in {first['reached']} of {first['of']} {problems}, "
-                    f"in {100 * count[1]:.0f} % at no more than twice the least cost") in page)
+                same(f"{group}, {readout}: sentence", True,
+                     f"read {PLACES[readout]} {listed} ({first['reached']} of {first['of']} {problems})" in page)
                 both_ways = lambda name: all(
                     name in best(race.table(group, r))[0] and all(holds(race, group, r, name).values()) for r in READOUTS)
                 strong = next((name for name in names if both_ways(name)), None)
                 words = {"moving": "points that move through the mesh", "rest": "points at rest", "total": "a mesh that follows the soil"}
-                told_strong = [name for name in count_methods(race, group) if f"**For {words[group]} take `{name}`.**" in page]
+                told_strong = [name for name in count_methods(race, group) if f"**For {words[group]} take `{name}`**" in page]
                 same(f"{group}, {readout}: strong", [strong] if strong else [], told_strong)
     profiles = defaultdict(list)
     for row in csv.DictReader(open(f"{folder}/tables/profile.csv", encoding="utf-8")):

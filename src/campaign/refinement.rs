@@ -3,6 +3,7 @@
 
 use crate::case::Case;
 use crate::case::contender::CONTENDERS;
+use crate::measure::record_checks::complaints;
 use crate::record::Record;
 use crate::record::calibration::cost_of;
 use crate::record::race_errors::{ARRIVED, ROUGH, ReadOut, RunErrors, SMALLEST};
@@ -15,6 +16,12 @@ use std::collections::BTreeMap;
 const MOST_WORK: f64 = 1.0;
 /// By how much an order may rise on finer meshes before a contender is given up.
 const RISE: f64 = 1.0;
+
+/// The errors of a run that the race judges: one that fails a check has not ended well.
+pub fn judged_errors(record: &Record) -> RunErrors {
+    let errors = RunErrors::of(record);
+    RunErrors { is_whole: errors.is_whole && complaints(record).is_empty(), ..errors }
+}
 
 /// What a run came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +80,7 @@ impl Refinement {
     /// Adds a run.
     pub fn add(&mut self, record: &Record) {
         let cells = record.case.cells;
-        let errors = RunErrors::of(record);
+        let errors = judged_errors(record);
         let small =
             |read_out| errors.largest_reached(read_out, None, None).is_some_and(|error| error <= ROUGH);
         let grew = !errors.is_whole && ReadOut::BOTH.into_iter().any(small);

@@ -1,24 +1,53 @@
-//! Which method should I take? The answers of the race with where they hold, and the problems one by one.
+//! Which method should I take? The answers of the race with where they hold, the families of problems, and the problems one by
+//! one.
 
 use crate::case::contender::PAPERS;
+use crate::case::grouping::distinct;
+use crate::questions::finding::{Finding, Place, Question};
+use crate::questions::study_results::StudyResults;
 use crate::race::RaceFindings;
 use crate::race::answer::Answer;
 use crate::race::finish::{Reason, Terms};
-use crate::race::group::Group;
+use crate::race::group::{Group, cost_table, races};
+use crate::race::profile::CostTable;
 use crate::race::situation::{Entry, Situation};
-use crate::record::race_errors::ReadOut;
-use crate::render::chart::{Chart, ChartAxis, Naming, Series, Size, Style, slots};
+use crate::record::race_errors::{ARRIVED, ReadOut};
+use crate::render::chart::{Chart, ChartAxis, ChartRow, ChartRows, Series, Size, Style, slots};
 use crate::render::number;
 use crate::render::page::Figure;
 use crate::render::table::{Cell, Table, columns};
-use serde::Serialize;
+use oedometer_exact::ExactError;
+use oedometer_soil::elementary;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::cmp::Reverse;
 
-/// The method of the program's recommendation before the race, the paper's, the plainest, and one whose mesh follows.
-pub const SHOWN: [&str; 4] = ["GC-Bbar-patch", PAPERS, "MPM", "TL-GC-SRI-patch"];
+/// Which method should I take?
+pub static CHOICE: Question = Question {
+    id: "choice",
+    heading: "Which method should I take?",
+    template: include_str!("choice.md"),
+    places: &[Place::Report],
+    facts: |schemas| schemas.subschema_for::<Facts>(),
+    ask,
+};
+
+/// The default, the paper's method, one whose mesh follows, and the plainest, each with a word on it.
+pub const SHOWN: [(&str, &str); 4] =
+    [("GC-Bbar-patch", "the default"), (PAPERS, "the paper's"), ("TL-GC-SRI-patch", "mesh follows"), ("MPM", "plain")];
 /// The largest multiple of the least cost that figures show.
 pub const LARGEST_TAU: f64 = 100.0;
-/// Where a method stands that does not reach the tolerance.
-const NEVER: f64 = 200.0;
+/// Families of problems, in words.
+const FAMILIES: [(&str, &str); 8] = [
+    ("column", "small strain, column"),
+    ("footing", "footing at collapse"),
+    ("layer", "undrained layer, slab"),
+    ("plane", "large strain, plane"),
+    ("points", "points off their lattice"),
+    ("soil", "two soils, yielding"),
+    ("strain", "large strain, column"),
+    ("waves", "waves"),
+];
 
 /// Words for a group.
 pub fn words_of(group: Group) -> &'static str {
@@ -37,30 +66,149 @@ pub fn places_of(read_out: ReadOut) -> &'static str {
     }
 }
 
+/// Every number and name of the sentences.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Facts {
+    /// Problems.
+    pub problems: usize,
+    /// Methods.
+    pub methods: usize,
+    /// The finishing line.
+    pub tolerance: f64,
+    /// Of each group and read-out the best method, and those that tie with it.
+    pub answers: Vec<Answer>,
+    /// What is said of each group.
+    pub groups: Vec<GroupAnswer>,
+    /// Per read-out who reaches 1 % most often, and at what price.
+    pub leaders: Vec<Leader>,
+    /// What to take in each family of problems, by group and read-out.
+    pub families: Vec<FamilyAnswer>,
+}
+
+impl Facts {
+    /// What some answer turns with, in words; empty where all hold wherever one looks.
+    pub fn turns(&self) -> String {
+        let all = self.groups.iter().flat_map(|group| &group.reads).flat_map(|read| &read.changes_with);
+        distinct(all.map(String::as_str)).join(", ")
+    }
+}
+
 /// What is said of a group: one sentence where it holds wherever one looks, else one per read-out.
-#[derive(Serialize)]
-pub struct GroupAnswer<'a> {
-    group: Group,
-    words: &'static str,
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct GroupAnswer {
+    /// The group.
+    pub group: Group,
+    /// The group in words.
+    words: String,
     /// The method that holds wherever one looks.
-    method: Option<&'a str>,
-    reads: Vec<ReadAnswer<'a>>,
+    method: Option<String>,
+    /// Per read-out.
+    reads: Vec<ReadAnswer>,
 }
 
-#[derive(Serialize)]
-struct ReadAnswer<'a> {
-    places: &'static str,
+/// The best of a group and read-out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+struct ReadAnswer {
+    /// Where fields are read, in words.
+    places: String,
     /// The best and those that tie with it.
-    methods: Vec<&'a str>,
-    first: &'a Answer,
+    methods: Vec<String>,
+    /// Problems in which the first reaches 1 %.
+    reached: usize,
+    /// Problems.
+    of: usize,
     /// What it changes with.
-    changes_with: Vec<&'static str>,
+    changes_with: Vec<String>,
 }
 
-fn group_answers(findings: &RaceFindings) -> Vec<GroupAnswer<'_>> {
+/// Who reaches 1 % most often of the methods for all problems, those whose mesh stays, and at what price.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Leader {
+    /// Where fields are read.
+    #[serde(rename = "readout")]
+    pub read_out: ReadOut,
+    /// Where fields are read, in words.
+    places: String,
+    /// The method; of several that reach it as often the one that costs the least times the cheapest at worst.
+    pub method: String,
+    /// Problems in which it reaches 1 %.
+    pub reached: usize,
+    /// Problems.
+    pub of: usize,
+    /// Problems in which no method is cheaper.
+    pub cheapest: usize,
+    /// Its largest cost over that of the cheapest method, of any group.
+    pub dearest: f64,
+}
+
+/// What to take in a family of problems.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FamilyAnswer {
+    /// The group.
+    pub group: Group,
+    /// Where fields are read.
+    #[serde(rename = "readout")]
+    pub read_out: ReadOut,
+    /// The family.
+    pub family: String,
+    /// The best method and those that tie with it; none where nobody reaches 1 %.
+    pub methods: Vec<String>,
+    /// Problems in which the first reaches it.
+    pub reached: usize,
+    /// Problems.
+    pub of: usize,
+    /// Least work to 1 % of any method of the group in the easiest and the hardest problem that is reached, s.
+    pub work: Option<[f64; 2]>,
+}
+
+impl FamilyAnswer {
+    /// The family in words.
+    pub fn words(&self) -> String {
+        let words = FAMILIES.iter().find(|(name, _)| *name == self.family);
+        let words = words.map_or(self.family.as_str(), |(_, words)| words);
+        if self.group == Group::Total { "… mesh may follow".to_owned() } else { words.to_owned() }
+    }
+}
+
+/// The studies of the race answer.
+fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
+    let race = RaceFindings::from_studies(studies.iter().map(|one| (one.study, one.records)));
+    Ok(race.filter(|race| !race.situations.is_empty()).map(|race| answer(&race)))
+}
+
+/// The answer of a race.
+pub fn answer(race: &RaceFindings) -> Finding {
+    CHOICE.answer(race.situations.iter().map(|one| one.study.as_str()), &facts(race))
+}
+
+/// What the sentences say.
+pub fn facts(race: &RaceFindings) -> Facts {
+    Facts {
+        problems: race.situations.len(),
+        methods: methods(race).len(),
+        tolerance: ARRIVED,
+        answers: race.answers.clone(),
+        groups: group_answers(race),
+        leaders: ReadOut::BOTH.into_iter().filter_map(|read_out| leader(race, read_out)).collect(),
+        families: races().flat_map(|(group, read_out)| family_answers(race, group, read_out)).collect(),
+    }
+}
+
+/// Methods that may run in some problem.
+fn methods(race: &RaceFindings) -> Vec<&str> {
+    let mut methods: Vec<&str> = Vec::new();
+    for entry in race.situations.iter().flat_map(|one| &one.entries) {
+        if !methods.contains(&entry.contender.as_str()) {
+            methods.push(&entry.contender);
+        }
+    }
+    methods
+}
+
+fn group_answers(race: &RaceFindings) -> Vec<GroupAnswer> {
     let read = |group: Group, read_out: ReadOut| {
         let answers: Vec<&Answer> =
-            findings.answers.iter().filter(|one| (one.group, one.read_out) == (group, read_out)).collect();
+            race.answers.iter().filter(|one| (one.group, one.read_out) == (group, read_out)).collect();
         let first = *answers.first()?;
         let holds = first.holds;
         let all = [
@@ -70,34 +218,82 @@ fn group_answers(findings: &RaceFindings) -> Vec<GroupAnswer<'_>> {
             (holds.read_out, "the read-out"),
         ];
         Some(ReadAnswer {
-            places: places_of(read_out),
-            methods: answers.iter().map(|one| one.method.as_str()).collect(),
-            first,
-            changes_with: all.into_iter().filter(|(holds, _)| !holds).map(|(_, what)| what).collect(),
+            places: places_of(read_out).to_owned(),
+            methods: answers.iter().map(|one| one.method.clone()).collect(),
+            reached: first.reached,
+            of: first.of,
+            changes_with: all.into_iter().filter(|(holds, _)| !holds).map(|(_, what)| what.to_owned()).collect(),
         })
     };
     let of_group = |group: Group| {
-        let reads: Vec<ReadAnswer<'_>> =
+        let reads: Vec<ReadAnswer> =
             ReadOut::BOTH.into_iter().filter_map(|read_out| read(group, read_out)).collect();
-        let own = findings.answers.iter().filter(|one| one.group == group && one.holds.everywhere());
-        let methods: Vec<(ReadOut, &str)> = own.map(|one| (one.read_out, one.method.as_str())).collect();
-        let both = |method: &str| ReadOut::BOTH.iter().all(|read_out| methods.contains(&(*read_out, method)));
-        let method = methods.iter().map(|(_, method)| *method).find(|method| both(method));
-        (!reads.is_empty()).then(|| GroupAnswer { group, words: words_of(group), method, reads })
+        let firm = |read_out: ReadOut, method: &str| {
+            race.answers.iter().any(|one| {
+                (one.group, one.read_out, one.method.as_str()) == (group, read_out, method)
+                    && one.holds.everywhere()
+            })
+        };
+        let mut methods = race.answers.iter().filter(|one| one.group == group).map(|one| &one.method);
+        let method = methods.find(|method| ReadOut::BOTH.iter().all(|read_out| firm(*read_out, method)));
+        let words = words_of(group).to_owned();
+        (!reads.is_empty()).then(|| GroupAnswer { group, words, method: method.cloned(), reads })
     };
     Group::EACH.into_iter().filter_map(of_group).collect()
 }
 
-/// Every number and name of the sentence.
-#[derive(Serialize)]
-pub struct Facts<'a> {
-    /// What is said of each group.
-    groups: Vec<GroupAnswer<'a>>,
+fn leader(race: &RaceFindings, read_out: ReadOut) -> Option<Leader> {
+    let terms = Terms::usual(read_out);
+    let of_method = |method: &str| {
+        let ratios = race.situations.iter().filter_map(|one| ratio(one, one.entry(method)?, &terms));
+        let ratios: Vec<f64> = ratios.collect();
+        Leader {
+            read_out,
+            places: places_of(read_out).to_owned(),
+            method: method.to_owned(),
+            reached: ratios.len(),
+            of: race.situations.len(),
+            cheapest: ratios.iter().filter(|ratio| **ratio <= 1.0).count(),
+            dearest: ratios.into_iter().fold(1.0, f64::max),
+        }
+    };
+    let everywhere = methods(race).into_iter().filter(|method| Group::Moving.takes(method));
+    let mut all: Vec<Leader> = everywhere.map(of_method).collect();
+    all.sort_by(|a, b| (Reverse(a.reached)).cmp(&Reverse(b.reached)).then(a.dearest.total_cmp(&b.dearest)));
+    all.into_iter().next().filter(|one| one.reached > 0)
 }
 
-/// What the sentence says.
-pub fn facts(findings: &RaceFindings) -> Facts<'_> {
-    Facts { groups: group_answers(findings) }
+fn family_answers(race: &RaceFindings, group: Group, read_out: ReadOut) -> Vec<FamilyAnswer> {
+    let table = cost_table(&race.situations, group, &Terms::usual(read_out));
+    let mut families: Vec<&str> = table.rows.iter().map(|row| row.family.as_str()).collect();
+    families.dedup();
+    let of_family = |family: &str| {
+        let rows = table.rows.iter().filter(|row| row.family == family).cloned().collect();
+        let table = CostTable { rows, methods: table.methods.clone() };
+        // Of those that tie the one that arrives most often, and then the cheapest.
+        let worth = |method: &str| {
+            let place = table.methods.iter().position(|one| one == method).unwrap_or_default();
+            let ratios: Vec<f64> = table.rows.iter().filter_map(|row| row.ratio(place)).collect();
+            let mean = ratios.iter().map(|ratio| elementary::ln(*ratio)).sum::<f64>() / ratios.len() as f64;
+            (ratios.len(), mean)
+        };
+        let mut best: Vec<(&str, (usize, f64))> =
+            table.best().into_iter().map(|method| (method, worth(method))).collect();
+        best.sort_by(|(_, a), (_, b)| b.0.cmp(&a.0).then(a.1.total_cmp(&b.1)));
+        let least = table.rows.iter().filter_map(|row| row.costs.iter().flatten().copied().reduce(f64::min));
+        let least: Vec<f64> = least.collect();
+        let work = least.iter().copied().reduce(f64::min).zip(least.iter().copied().reduce(f64::max));
+        FamilyAnswer {
+            group,
+            read_out,
+            family: family.to_owned(),
+            methods: best.iter().map(|(method, _)| (*method).to_owned()).collect(),
+            reached: best.first().map_or(0, |(_, (reached, _))| *reached),
+            of: table.rows.len(),
+            work: work.map(|(least, most)| [least, most]),
+        }
+    };
+    families.into_iter().map(of_family).collect()
 }
 
 /// A reason with what was measured.
@@ -120,38 +316,125 @@ pub fn cheapest<'a>(
     costs.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// A row per problem: cost to 1 % over the cheapest of all methods.
-pub fn dot_plot(findings: &RaceFindings, read_out: ReadOut) -> Figure {
+/// The cost of a method over that of the cheapest of all, where it reaches the tolerance.
+fn ratio(situation: &Situation, entry: &Entry, terms: &Terms) -> Option<f64> {
+    let (_, least) = cheapest(situation, terms, |_| true)?;
+    Some(situation.arrival(entry, terms)?.cost / least)
+}
+
+/// A method in a problem; where nothing moves a mesh that follows is the same mesh.
+fn entry_of<'a>(situation: &'a Situation, method: &str) -> Option<&'a Entry> {
+    let at_rest = || situation.entry(method.trim_start_matches("TL-")).filter(|_| !situation.moves);
+    situation.entry(method).or_else(at_rest)
+}
+
+/// The methods of the dot plot with a word on each: who reaches 1 % most often first.
+fn plotted(race: &RaceFindings, read_out: ReadOut) -> Vec<(String, &'static str)> {
+    let leader = leader(race, read_out).map(|one| one.method);
+    let most = leader.iter().filter(|method| SHOWN.iter().all(|(name, _)| name != method));
+    let most = most.map(|method| (method.clone(), "most often"));
+    most.chain(SHOWN.iter().map(|(name, word)| ((*name).to_owned(), *word))).collect()
+}
+
+/// A row per problem: cost to 1 % over the cheapest of all methods, why a method does not get there, and the cheapest with its
+/// cost, cells and step.
+pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
     let terms = Terms::usual(read_out);
-    let rows = || findings.situations.iter().enumerate().map(|(place, one)| (-(place as f64), one));
-    let last = 1.0 - findings.situations.len() as f64;
+    let methods = plotted(race, read_out);
+    let names: Vec<&str> = methods.iter().map(|(name, _)| name.as_str()).collect();
+    let ticks = [(1.0, "× 1"), (2.0, "× 2"), (5.0, "× 5"), (10.0, "× 10"), (20.0, ""), (50.0, ""), (LARGEST_TAU, "× 100")];
     let mut chart = Chart::new(
-        "Cost to 1 % over that of the cheapest method: no method is the cheapest everywhere",
-        ChartAxis::log10("multiple of the least work; at the right end: 1 % is not reached")
-            .between(0.8, 1.3 * NEVER)
-            .with_labelled_ticks(
-                [1.0, 2.0, 5.0, 10.0, 100.0]
-                    .map(|tau| (tau, number::short(tau)))
-                    .into_iter()
-                    .chain([(NEVER, "never".to_owned())]),
-            ),
-        ChartAxis::linear("")
-            .between(last - 0.7, 0.7)
-            .with_labelled_ticks(rows().map(|(y, one)| (y, one.title.clone()))),
+        format!("No method is the cheapest everywhere: cost to 1 %, read {}", places_of(read_out)),
+        ChartAxis::log10("Work over the cheapest")
+            .between(1.0, LARGEST_TAU)
+            .with_labelled_ticks(ticks.map(|(tau, words)| (tau, words.to_owned()))),
+        ChartAxis::linear("row"),
     );
-    chart.size =
-        Size { width: 960.0, plot_height: 20.0 * findings.situations.len() as f64, equal_units: false };
-    chart.naming = Naming::Legend;
-    for (name, slot) in SHOWN.into_iter().zip(slots(&SHOWN)) {
-        let points = rows().filter_map(|(y, situation)| {
-            let entry = situation.entry(name)?;
-            let least = cheapest(situation, &terms, |_| true).map(|(_, cost)| cost);
-            let ratio = situation.arrival(entry, &terms).zip(least).map(|(one, least)| one.cost / least);
-            Some((ratio.map_or(NEVER, |ratio| ratio.min(LARGEST_TAU)), y))
+    chart.size = Size { width: 1000.0, ..Size::default() };
+    for (name, slot) in names.iter().zip(slots(&names)) {
+        let points = race.situations.iter().enumerate().filter_map(|(place, situation)| {
+            Some((ratio(situation, entry_of(situation, name)?, &terms)?, place as f64))
         });
-        chart.series.push(Series::new(name, points.collect()).style(Style::Markers).slot(slot));
+        chart.series.push(Series::new(*name, points.collect()).style(Style::Markers).slot(slot));
     }
-    Figure::new(format!("race-problems-{}", read_out.name()), chart, "")
+    let notes = methods.iter().zip(&chart.series);
+    let notes = notes.map(|((_, word), one)| format!("{word}: {} of {}", one.points.len(), race.situations.len()));
+    chart.rows = Some(ChartRows {
+        series: notes.collect(),
+        without: "Does not reach 1 %".to_owned(),
+        heads: ["Cheapest", "ms", "cells", "step"].map(str::to_owned).to_vec(),
+        rows: race.situations.iter().map(|one| plotted_row(one, &names, &terms)).collect(),
+    });
+    let caption = "At the right: dearer. *Budget*: the error still falls when the meshes end; *plateau*: it stays; *inaccurate*: it is \
+                   large and stays, or ends the run. Work: counted operations times their calibrated times.";
+    Figure::new(format!("race-problems-{}", read_out.name()), chart, caption)
+}
+
+/// The words of a problem.
+fn plotted_row(situation: &Situation, methods: &[&str], terms: &Terms) -> ChartRow {
+    let without = methods.iter().map(|method| {
+        let reason = entry_of(situation, method).map(|entry| situation.reason(entry, terms));
+        reason.unwrap_or(Some(Reason::NotRun)).map_or("", Reason::word).replace("not applicable", "excluded")
+    });
+    let best = cheapest(situation, terms, |_| true);
+    let arrival = best.and_then(|(entry, cost)| Some((entry, cost, situation.arrival(entry, terms)?)));
+    let words = match arrival {
+        Some((entry, cost, arrival)) => vec![
+            entry.contender.clone(),
+            number::short(1e3 * cost),
+            arrival.cells.to_string(),
+            arrival.step.replace('=', " "),
+        ],
+        None => vec![nearest(situation, terms)],
+    };
+    ChartRow { name: situation.title.clone(), family: situation.family.clone(), without: without.collect(), words }
+}
+
+/// How near the most accurate method came where none reaches the tolerance.
+fn nearest(situation: &Situation, terms: &Terms) -> String {
+    let finest = situation.entries.iter().filter_map(|entry| {
+        let level = entry.levels.iter().rev().find(|level| level.cells <= situation.most_cells(terms.budget))?;
+        Some((level.error(terms)?, level.cells, &entry.contender))
+    });
+    finest.min_by(|a, b| a.0.total_cmp(&b.0)).map_or("none".to_owned(), |(error, cells, method)| {
+        format!("none; {method} {} on {cells}", number::percent(error))
+    })
+}
+
+/// What to take by the kind of problem, and what 1 % costs.
+pub fn family_table(facts: &Facts, read_out: ReadOut) -> Table {
+    let mut families: Vec<&FamilyAnswer> =
+        facts.families.iter().filter(|one| one.read_out == read_out).collect();
+    families.sort_by_key(|one| FAMILIES.iter().position(|(name, _)| *name == one.family));
+    let rows = families.into_iter().map(|one| {
+        let milliseconds = |work: f64| number::short(1e3 * work);
+        let work = one.work.map(|[least, most]| {
+            let both = [least, most].map(milliseconds);
+            if both[0] == both[1] { both[0].clone() } else { both.join(" – ") }
+        });
+        let others = one.methods.len().saturating_sub(1);
+        let method = one.methods.first().map(|method| match others {
+            0 => format!("`{method}`"),
+            others => format!("`{method}` + {others}"),
+        });
+        vec![
+            one.words().into(),
+            Cell::Text(method.unwrap_or_else(|| "none".to_owned())),
+            format!("{} of {}", one.reached, one.of).into(),
+            Cell::Text(work.unwrap_or_default()),
+        ]
+    });
+    Table::of("If your problem is …, and what 1 % costs", columns("your problem | take | > 1 % in | > ms"), rows)
+        .file(format!("families-{}", read_out.name()))
+        .note("+: as many that are as good; ms: the least work, easiest to hardest problem")
+}
+
+/// Methods whose cost stands beside the cheapest.
+const BESIDE: [&str; 3] = [SHOWN[0].0, PAPERS, "MPM"];
+
+/// A group in a table.
+fn in_short(group: Group) -> &'static str {
+    ["moving", "at rest", "mesh follows"][group as usize]
 }
 
 /// The practitioner's table: per problem the cheapest method with its mesh, step and work, and what others cost beside it.
@@ -160,7 +443,7 @@ pub fn practice(findings: &RaceFindings, read_out: ReadOut) -> Table {
     let row = |group: Group, situation: &Situation| {
         let best = cheapest(situation, &terms, |method| group.takes(method));
         let arrival = best.and_then(|(entry, _)| situation.arrival(entry, &terms));
-        let mut row: Vec<Cell> = vec![words_of(group).into(), situation.title.as_str().into()];
+        let mut row: Vec<Cell> = vec![in_short(group).into(), situation.title.as_str().into()];
         match (best, arrival) {
             (Some((entry, cost)), Some(arrival)) => row.extend([
                 Cell::Code(entry.contender.clone()),
@@ -171,11 +454,8 @@ pub fn practice(findings: &RaceFindings, read_out: ReadOut) -> Table {
             _ => row.extend(std::iter::repeat_n(Cell::missing("no method reaches 1 %"), 4)),
         }
         let of_total = if group == Group::Total { "TL-" } else { "" };
-        row.extend(
-            SHOWN[..3]
-                .iter()
-                .map(|name| regret(situation, &format!("{of_total}{name}"), &terms, best.map(|one| one.1))),
-        );
+        let beside = BESIDE.map(|name| regret(situation, &format!("{of_total}{name}"), &terms, best.map(|one| one.1)));
+        row.extend(beside);
         row
     };
     let rows = Group::EACH.into_iter().flat_map(|group| {
@@ -183,7 +463,7 @@ pub fn practice(findings: &RaceFindings, read_out: ReadOut) -> Table {
     });
     let heads = format!(
         "group | problem | cheapest | > cells | step | > work to 1 % | > {} | > {} | > {}",
-        SHOWN[0], SHOWN[1], SHOWN[2]
+        BESIDE[0], BESIDE[1], BESIDE[2]
     );
     Table::of(format!("What 1 % takes, read {}", places_of(read_out)), columns(&heads), rows)
         .note("last columns: work over that of the cheapest, or why 1 % is not reached; where the mesh follows, their TL- forms")

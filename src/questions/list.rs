@@ -1,5 +1,6 @@
 //! The questions in the order of a reader, and their answers.
 
+use crate::questions::choice::CHOICE;
 use crate::questions::finding::{Finding, Place, Question};
 use crate::questions::locking::LOCKING;
 use crate::questions::settlement::SETTLEMENT;
@@ -10,7 +11,7 @@ use schemars::{Schema, SchemaGenerator, json_schema};
 use serde_json::json;
 
 /// Every question, in the order of a page.
-pub static QUESTIONS: &[&Question] = &[&SETTLEMENT, &LOCKING];
+pub static QUESTIONS: &[&Question] = &[&CHOICE, &SETTLEMENT, &LOCKING];
 
 /// What studies answer at a place, in the order of the questions.
 ///

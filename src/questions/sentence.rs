@@ -11,7 +11,7 @@ use oedometer_soil::wording::{clock_time, count_of, duration, typed};
 use serde::Serialize;
 
 /// The templates by their names.
-const TEMPLATES: [(&str, &str); 24] = [
+const TEMPLATES: [(&str, &str); 25] = [
     ("audit", include_str!("../../templates/audit.md")),
     ("balances", include_str!("../../templates/balances.md")),
     ("changes", include_str!("../../templates/changes.md")),
@@ -26,7 +26,8 @@ const TEMPLATES: [(&str, &str); 24] = [
     ("peers", include_str!("../../templates/peers.md")),
     ("printed-equations", include_str!("../../templates/printed-equations.md")),
     ("proposed", include_str!("../../templates/proposed.md")),
-    ("race-answers", include_str!("../../templates/race-answers.md")),
+    ("race-headline", include_str!("../../templates/race-headline.md")),
+    ("race-lead", include_str!("../../templates/race-lead.md")),
     ("race-rules", include_str!("../../templates/race-rules.md")),
     ("sampling", include_str!("../../templates/sampling.md")),
     ("setting", include_str!("../../templates/setting.md")),
@@ -62,6 +63,7 @@ pub(crate) fn environment() -> Result<Environment<'static>, RenderError> {
     environment.add_filter("percent", number::rounded_percent);
     environment.add_filter("ratio", |ratio: f64| number::fixed(ratio, 2));
     environment.add_filter("seconds", number::seconds);
+    environment.add_filter("short", number::short);
     environment.add_filter("signed_percent", |share: f64| {
         let sign = if share < 0.0 { "−" } else { "+" };
         format!("{sign}{:.1} %", 100.0 * share.abs())

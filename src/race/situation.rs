@@ -1,7 +1,7 @@
 //! What the records of a situation of the race come to: per contender its meshes with their errors and costs, or why it has
 //! none, and the properties that are no errors.
 
-use crate::campaign::refinement::{Refinement, halvings, steps_of};
+use crate::campaign::refinement::{Refinement, halvings, judged_errors, steps_of};
 use crate::case::contender::{CONTENDERS, Contender};
 use crate::case::{Quantity, Sample, Task};
 use crate::judge::paths::first_error;
@@ -171,8 +171,8 @@ fn level(runs: &[&Record]) -> Level {
         step: runs[0].case.time_step.to_string(),
         cost: cost_of(runs[0]),
         seconds: median(&seconds),
-        errors: RunErrors::of(runs[0]),
-        shorter: runs[1..].iter().map(|record| RunErrors::of(record)).collect(),
+        errors: judged_errors(runs[0]),
+        shorter: runs[1..].iter().map(|record| judged_errors(record)).collect(),
     }
 }
 
@@ -302,6 +302,18 @@ mod tests {
                 .is_none()
         );
         assert!(Situation::from_records(&study, &[]).is_none(), "nothing has run");
+    }
+
+    #[test]
+    fn a_run_that_fails_a_check_reaches_nothing() {
+        let (study, mut records) = race();
+        for record in records.iter_mut().filter(|one| one.case.method.to_string() == "GIMP" && one.case.cells == 16) {
+            record.start.as_mut().expect("a start").volume_error = 0.5;
+        }
+        let situation = Situation::from_records(&study, &records).expect("a race");
+        let [gimp, mpm] = ["GIMP", "MPM"].map(|name| situation.entry(name).expect("it runs"));
+        let terms = Terms::usual(ReadOut::Points);
+        assert_eq!([gimp, mpm].map(|one| situation.arrival(one, &terms).is_some()), [false, true]);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 
 mod architecture;
 mod case_work_estimate;
+mod dead_links;
 mod distinct_numbers;
 mod documented_tables;
 mod golden_and_history;

@@ -1,7 +1,7 @@
 //! The contenders of the race, one line each: what `method = ["race"]` runs, by the names that `solve` takes.
 
 use crate::{Case, SolverName};
-use oedometer_problem::method::{Basis, Configuration, Method, Recovery};
+use oedometer_problem::method::{Configuration, Method, Recovery};
 use oedometer_scenes::scene::Clock;
 use std::sync::LazyLock;
 
@@ -64,20 +64,10 @@ impl Contender {
 
     /// Why it does not race in a case: a limit of how this program has it, that would be judged instead of the method.
     pub fn unfit(&self, case: &Case) -> Option<&'static str> {
-        let is_spline = matches!(self.method.basis, Basis::Bspline2 | Basis::Bspline3);
-        match case.scene.clock {
-            Clock::Wave | Clock::Consolidation
-                if case.scene.waves && self.method.recovery == Recovery::Ppp =>
-            {
-                Some(
-                    "the published parameter of the projection is quasi-static (White & Borja 2008): its storage slows waves",
-                )
-            }
-            _ if is_spline && case.points_per_cell == 1 => {
-                Some("with one point per cell the spline beyond the surface takes an eighth of the load")
-            }
-            _ => None,
-        }
+        let is_wave = matches!(case.scene.clock, Clock::Wave | Clock::Consolidation) && case.scene.waves;
+        (is_wave && self.method.recovery == Recovery::Ppp).then_some(
+            "the published parameter of the projection is quasi-static (White & Borja 2008): its storage slows waves",
+        )
     }
 
     /// Whether its mesh follows the soil.

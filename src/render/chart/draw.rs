@@ -4,12 +4,13 @@ use crate::render::RenderError;
 use crate::render::chart::axis::{Ends, PlacedAxis, Reason, Scale, TICK_FONT};
 use crate::render::chart::ends::{end_names, end_names_width};
 use crate::render::chart::looks::{Legend, Look, draw_marker, field_colour, looks};
-use crate::render::chart::multiples::side_by_side;
+use crate::render::chart::multiples::{SIDE_BY_SIDE, side_by_side};
+use crate::render::chart::rows;
 use crate::render::chart::svg::{
     Area, Drawn, Font, Px, document, group, layer, line, scripted, spot, stroke, units, write,
 };
 use crate::render::chart::words::{Frame, Space, names, rules, triangles};
-use crate::render::chart::{Chart, ChartAxis, Style};
+use crate::render::chart::{Chart, ChartAxis, Naming, Style};
 use crate::render::palette::{FINE_GRID, FRAME, GRID, QUIET, SCREEN, TEXT};
 use crate::render::script::{width, wrap};
 use oedometer_soil::wording::count_of;
@@ -24,6 +25,9 @@ const SUBTITLE: Font = Font { size: 12.0, colour: QUIET.light, is_bold: false };
 const LABEL: Font = Font { size: 13.0, colour: TEXT.light, is_bold: false };
 const TICK: Font = Font { size: TICK_FONT, colour: TEXT.light, is_bold: false };
 const NOTE: Font = Font { size: 11.0, colour: QUIET.light, is_bold: false };
+/// Width of a figure on the screen of a phone, and the most height of its plot, px.
+const NARROW: f64 = 368.0;
+const NARROW_HEIGHT: f64 = 280.0;
 /// Margin around the figure, px.
 const PAD: f64 = 14.0;
 /// Height of a line in sizes of its font.
@@ -187,16 +191,48 @@ impl Chart {
     /// # Errors
     /// If plotters fails to draw it.
     pub fn svg(&self) -> Result<String, RenderError> {
-        let draw = || -> Result<String, String> {
-            let panels = self.panels();
-            let (size, elements) = if panels.is_empty() {
-                self.elements()?
-            } else {
-                side_by_side(&panels.iter().map(Self::elements).collect::<Result<Vec<_>, _>>()?)
-            };
-            Ok(document(size, &self.title, &self.description(), &elements))
+        self.document_of(|| match &self.rows {
+            Some(rows) => rows::elements(self, rows, false),
+            None => self.as_panels(SIDE_BY_SIDE),
+        })
+    }
+
+    /// The same for the screen of a phone, where it does not fit one: narrower, with panels and names below each other.
+    ///
+    /// # Errors
+    /// If plotters fails to draw it.
+    pub fn narrow_svg(&self) -> Result<Option<String>, RenderError> {
+        let document = match &self.rows {
+            Some(rows) => self.document_of(|| rows::elements(self, rows, true)),
+            None if self.size.width <= NARROW => return Ok(None),
+            None => {
+                let mut narrow = self.clone();
+                narrow.size.plot_height = self.size.plot_height.min(NARROW_HEIGHT);
+                narrow.size.width = NARROW;
+                // Names beside lines and points have no room.
+                if self.naming == Naming::Ends || !self.names.is_empty() {
+                    narrow.naming = Naming::Legend;
+                    narrow.names.clear();
+                }
+                narrow.document_of(|| narrow.as_panels((1, NARROW)))
+            }
         };
-        draw().map_err(|reason| RenderError::Draw { title: self.title.clone(), reason })
+        document.map(Some)
+    }
+
+    fn document_of(&self, draw: impl FnOnce() -> Result<(Px, String), String>) -> Result<String, RenderError> {
+        let drawn = draw().map(|(size, elements)| document(size, &self.title, &self.description(), &elements));
+        drawn.map_err(|reason| RenderError::Draw { title: self.title.clone(), reason })
+    }
+
+    /// One plot, or panels in columns of a width.
+    fn as_panels(&self, columns: (usize, f64)) -> Result<(Px, String), String> {
+        let mut panels = self.panels();
+        if panels.is_empty() {
+            return self.elements();
+        }
+        panels.iter_mut().for_each(|panel| panel.size.width = columns.1);
+        Ok(side_by_side(&panels.iter().map(Self::elements).collect::<Result<Vec<_>, _>>()?, columns))
     }
 
     /// Size of the figure as one plot, and its elements.

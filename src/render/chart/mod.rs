@@ -8,10 +8,12 @@ mod draw;
 mod ends;
 mod looks;
 mod multiples;
+mod rows;
 mod slots;
 mod svg;
 mod words;
 
+pub use crate::render::chart::rows::{ChartRow, ChartRows};
 pub use crate::render::chart::slots::slots;
 
 use crate::render::chart::axis::{Scale, drawable};
@@ -40,6 +42,8 @@ pub struct Chart {
     pub triangles: Vec<SlopeTriangle>,
     /// Names written beside single points.
     pub names: Vec<PointName>,
+    /// Rows with words, of a dot plot.
+    pub rows: Option<ChartRows>,
     /// Where the names of series stand.
     pub naming: Naming,
     /// Width of the figure and height of the plot.
@@ -81,6 +85,7 @@ impl Chart {
             rules: Vec::new(),
             triangles: Vec::new(),
             names: Vec::new(),
+            rows: None,
             naming: Naming::default(),
             size: Size::default(),
         }

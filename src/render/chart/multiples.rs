@@ -17,7 +17,8 @@ const LONGEST_NAMES: usize = 60;
 /// Width of a panel, px: two stand side by side.
 const PANEL_WIDTH: f64 = 450.0;
 
-const COLUMNS: usize = 2;
+/// Columns of panels and their width, where there is room.
+pub(super) const SIDE_BY_SIDE: (usize, f64) = (2, PANEL_WIDTH);
 
 impl Chart {
     /// The panels of a figure with more series than colours; empty if one plot serves.
@@ -99,12 +100,12 @@ fn is_counted(series: &Series) -> bool {
     !matches!(series.style, Style::Theory | Style::Context) && !series.name.is_empty()
 }
 
-/// Panels side by side, row by row: the size of the whole and its elements.
-pub(super) fn side_by_side(panels: &[(Px, String)]) -> (Px, String) {
+/// Panels side by side in columns of a width, row by row: the size of the whole and its elements.
+pub(super) fn side_by_side(panels: &[(Px, String)], (columns, wide): (usize, f64)) -> (Px, String) {
     let (mut elements, mut top) = (String::new(), 0.0);
-    for row in panels.chunks(COLUMNS) {
+    for row in panels.chunks(columns) {
         for (place, ((width, height), panel)) in row.iter().enumerate() {
-            let [x, y, w, h] = [place as f64 * PANEL_WIDTH, top, *width, *height].map(|px| px * 10.0);
+            let [x, y, w, h] = [place as f64 * wide, top, *width, *height].map(|px| px * 10.0);
             let _ = write!(
                 elements,
                 "<svg x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\">\n{panel}</svg>\n"
@@ -112,7 +113,7 @@ pub(super) fn side_by_side(panels: &[(Px, String)]) -> (Px, String) {
         }
         top += row.iter().map(|((_, height), _)| *height).fold(0.0, f64::max);
     }
-    ((PANEL_WIDTH * COLUMNS.min(panels.len()) as f64, top), elements)
+    ((wide * columns.min(panels.len()) as f64, top), elements)
 }
 
 #[cfg(test)]
@@ -159,12 +160,12 @@ mod tests {
         assert_eq!(panels.iter().map(|panel| panel.names.len()).collect::<Vec<_>>(), [1, 0, 0]);
         assert_eq!(panels.iter().map(|panel| panel.triangles.len()).collect::<Vec<_>>(), [0, 0, 1]);
         let part = |height: f64, text: &str| ((450.0, height), text.to_owned());
-        let (size, drawn) = side_by_side(&[part(300.0, "a"), part(320.0, "b"), part(310.0, "c")]);
+        let (size, drawn) = side_by_side(&[part(300.0, "a"), part(320.0, "b"), part(310.0, "c")], SIDE_BY_SIDE);
         assert_eq!(size, (900.0, 630.0), "two in a row, each row as high as its highest");
         let places: Vec<&str> =
             drawn.lines().filter(|line| line.starts_with("<svg")).map(|line| &line[5..20]).collect();
         assert_eq!(places, ["x=\"0\" y=\"0\" wid", "x=\"4500\" y=\"0\" ", "x=\"0\" y=\"3200\" "]);
-        assert_eq!(side_by_side(&[part(300.0, "a")]).0, (450.0, 300.0));
+        assert_eq!(side_by_side(&[part(300.0, "a")], SIDE_BY_SIDE).0, (450.0, 300.0));
         let svg = whole.svg().expect("it is drawn");
         assert_eq!(svg.matches("E: method").count(), 3);
         assert!(svg.contains("<title>method 0</title>") && svg.contains("<title>method 14</title>"));

@@ -19,6 +19,8 @@ use std::sync::OnceLock;
 pub struct Page {
     /// Heading of the whole.
     pub title: String,
+    /// Links at the top, each with its words and target; the first leads back to the front page.
+    pub links: Vec<(String, String)>,
     /// Text before the sections.
     pub lead: String,
     /// The main result, below the lead.
@@ -88,6 +90,8 @@ pub enum Block {
     Figure(Figure),
     /// Figures side by side, where there is room.
     Figures(Vec<Figure>),
+    /// Blocks with others beside them, where there is room.
+    Beside(Vec<Self>, Vec<Self>),
     /// Blocks of which one is shown at a time, the first one first, each with the word that shows it.
     Switch(Vec<(String, Vec<Block>)>),
     /// Blocks that the reader opens.
@@ -118,6 +122,7 @@ impl Block {
                 choices.retain(|(_, blocks)| !blocks.is_empty());
                 (!choices.is_empty()).then_some(Self::Switch(choices))
             }
+            Self::Beside(main, aside) => Some(Self::Beside(all(main), all(aside))),
             Self::Details { summary, blocks } => {
                 let blocks = all(blocks);
                 (!blocks.is_empty()).then_some(Self::Details { summary, blocks })
@@ -136,8 +141,8 @@ pub struct Figure {
     pub chart: Box<Chart>,
     /// The caption, lightly marked.
     pub caption: String,
-    /// The SVG, once drawn.
-    drawn: OnceLock<String>,
+    /// The SVG, once drawn, and that for a phone, where it does not fit one.
+    drawn: OnceLock<(String, Option<String>)>,
 }
 
 impl Figure {
@@ -152,10 +157,22 @@ impl Figure {
     /// # Errors
     /// If it cannot be drawn.
     pub fn svg(&self) -> Result<&str, RenderError> {
+        Ok(&self.both()?.0)
+    }
+
+    /// The chart for the screen of a phone, where it does not fit one.
+    ///
+    /// # Errors
+    /// If it cannot be drawn.
+    pub fn narrow_svg(&self) -> Result<Option<&str>, RenderError> {
+        Ok(self.both()?.1.as_deref())
+    }
+
+    fn both(&self) -> Result<&(String, Option<String>), RenderError> {
         if let Some(drawn) = self.drawn.get() {
             return Ok(drawn);
         }
-        let drawn = self.chart.svg()?;
+        let drawn = (self.chart.svg()?, self.chart.narrow_svg()?);
         Ok(self.drawn.get_or_init(|| drawn))
     }
 
@@ -196,6 +213,7 @@ fn all_blocks(page: &Page) -> Vec<&Block> {
             out.push(block);
             match block {
                 Block::Details { blocks, .. } => collect(blocks, out),
+                Block::Beside(main, aside) => [main, aside].into_iter().for_each(|one| collect(one, out)),
                 Block::Switch(views) => views.iter().for_each(|(_, blocks)| collect(blocks, out)),
                 _ => {}
             }

@@ -62,6 +62,7 @@ pub fn render_html(page: &Page) -> Result<String, RenderError> {
             ("title", &escape::plain_html(&page.title)),
             ("style", &(STYLE.to_owned() + &palette::dark_rules(".card"))),
             ("wide", if page.is_wide { " wide" } else { "" }),
+            ("links", &html_links(&page.links)),
             ("heading", &escape::html(&page.title)),
             ("lead", &html_text(&page.lead)),
             ("callout", &callout.unwrap_or_default()),
@@ -85,12 +86,22 @@ fn filled(template: &str, texts: &[(&str, &str)]) -> String {
     out
 }
 
+/// The links at the top of a page.
+fn html_links(links: &[(String, String)]) -> String {
+    let link = |(words, target): &(String, String)| {
+        format!("<a href=\"{}\">{}</a>\n", escape::plain_html(target), escape::html(words))
+    };
+    let links: String = links.iter().map(link).collect();
+    if links.is_empty() { links } else { format!("<nav class=\"links\" aria-label=\"Pages\">\n{links}</nav>\n") }
+}
+
 /// Sections that a list of contents may have: a longer one hides the page on a phone.
 const MOST_CONTENTS: usize = 20;
 
-/// The list of the sections, where there are several and not too many.
+/// The list of the sections, where there are several and not too many, and no links at the top that have them.
 fn html_contents(page: &Page) -> String {
-    if !(2..=MOST_CONTENTS).contains(&page.sections.len()) {
+    let is_told = page.is_wide && !page.links.is_empty();
+    if is_told || !(2..=MOST_CONTENTS).contains(&page.sections.len()) {
         return String::new();
     }
     let mut out = "<nav aria-label=\"Contents\">\n<p class=\"nav-title\">Contents</p>\n<ol>\n".to_owned();
@@ -142,6 +153,17 @@ fn html_block(block: &Block, out: &mut String, written: &mut Written<'_>) -> Res
             }
             out.push_str("</div>\n");
         }
+        Block::Beside(main, aside) => {
+            out.push_str("<div class=\"beside\">\n");
+            for (blocks, [open, close]) in [(main, ["<div>", "</div>"]), (aside, ["<aside>", "</aside>"])] {
+                let _ = writeln!(out, "{open}");
+                for block in blocks {
+                    html_block(block, out, written)?;
+                }
+                let _ = writeln!(out, "{close}");
+            }
+            out.push_str("</div>\n");
+        }
         Block::Switch(views) => {
             written.switches += 1;
             out.push_str("<div class=\"switch\">\n");
@@ -157,8 +179,9 @@ fn html_block(block: &Block, out: &mut String, written: &mut Written<'_>) -> Res
             }
             // The views stand in one place, and count as one figure.
             let (first, mut last) = (written.figures, written.figures);
-            for (_, blocks) in views {
-                out.push_str("<div>\n");
+            for (word, blocks) in views {
+                // Where all views are shown, as on paper, each has its word.
+                let _ = writeln!(out, "<div>\n<p class=\"view\">{}</p>", escape::html(word));
                 written.figures = first;
                 for block in blocks {
                     html_block(block, out, written)?;
@@ -205,11 +228,13 @@ fn html_figure(figure: &Figure, out: &mut String, written: &mut Written<'_>) -> 
     let own = width.map_or(String::new(), |width| format!(" style=\"--own: {width}px\""));
     // A figure of several panels beside another would have letters that nobody reads.
     let whole = if width.is_some_and(|width| width > WIDEST_BESIDE) { " class=\"whole\"" } else { "" };
+    let narrow = figure.narrow_svg()?.map(|svg| format!("<div class=\"card narrow\">{svg}</div>\n"));
+    let (wide, narrow) = (if narrow.is_some() { " wide" } else { "" }, narrow.unwrap_or_default());
     let caption =
         paragraphs(&figure.caption).iter().map(|text| to_html(text)).collect::<Vec<_>>().join("<br>");
     let _ = write!(
         out,
-        "<figure{whole} id=\"figure-{name}\">\n<div class=\"card\"{own}>{svg}</div>\n\
+        "<figure{whole} id=\"figure-{name}\">\n<div class=\"card{wide}\"{own}>{svg}</div>\n{narrow}\
          <figcaption><b>Figure {number}.</b> {caption}{files}</figcaption>\n</figure>\n",
     );
     Ok(())
@@ -233,10 +258,16 @@ fn natural_width(svg: &str) -> Option<f64> {
 pub fn render_markdown(page: &Page) -> Result<String, RenderError> {
     check(page)?;
     let mut written = Written::of(page);
-    let mut out = vec![format!("# {}", escape::markdown(&page.title)), markdown_text(&page.lead)];
+    let link = |(words, target): &(String, String)| format!("[{words}]({target})");
+    let links = page.links.iter().map(link).collect::<Vec<_>>().join(" · ");
+    let mut out = vec![
+        markdown_text(&links),
+        format!("# {}", escape::markdown(&page.title)),
+        markdown_text(&page.lead),
+    ];
     out.extend(page.callout.as_ref().map(|(mood, text)| markdown_callout(*mood, text)));
     let mark = |section: &Section| section.mood.map(|mood| format!(" {}", mood.mark())).unwrap_or_default();
-    if page.sections.len() > 2 {
+    if page.sections.len() > 2 && !(page.is_wide && !page.links.is_empty()) {
         let entry =
             |one: &Section| format!("- [{}](#{}){}", escape::markdown(&one.heading), one.id, mark(one));
         out.push(page.sections.iter().map(entry).collect::<Vec<_>>().join("\n"));
@@ -286,11 +317,18 @@ fn markdown_block(block: &Block, written: &mut Written<'_>) -> Result<String, Re
         }
         Block::Figure(figure) => markdown_figure(figure),
         Block::Figures(figures) => figures.iter().map(markdown_figure).collect::<Vec<_>>().join("\n\n"),
+        Block::Beside(main, aside) => {
+            let all = main.iter().chain(aside).map(|block| markdown_block(block, written));
+            all.collect::<Result<Vec<_>, _>>()?.join("\n\n")
+        }
         Block::Switch(views) => {
-            let details = |(word, blocks): &(String, Vec<Block>)| {
-                markdown_block(&Block::Details { summary: word.clone(), blocks: blocks.clone() }, written)
+            let details = |(place, (word, blocks)): (usize, &(String, Vec<Block>))| {
+                let details = Block::Details { summary: word.clone(), blocks: blocks.clone() };
+                let view = markdown_block(&details, written)?;
+                // The first one is seen at once.
+                Ok(if place == 0 { view.replacen("<details>", "<details open>", 1) } else { view })
             };
-            views.iter().map(details).collect::<Result<Vec<_>, _>>()?.join("\n\n")
+            views.iter().enumerate().map(details).collect::<Result<Vec<_>, RenderError>>()?.join("\n\n")
         }
         Block::Details { summary, blocks } => {
             let inside: Result<Vec<_>, _> =

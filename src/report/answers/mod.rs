@@ -142,7 +142,7 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, RenderError> {
     let (studies, findings) = (&answers.all.studies, answers.findings);
     let race = findings.race.as_ref().filter(|race| !race.situations.is_empty());
     let all = [
-        race.map(race::section),
+        race.map(|race| race::section(race, findings)).transpose()?,
         findings.cost.as_ref().map(cost_section).transpose()?,
         findings.paper.as_ref().map(paper::section).transpose()?,
         answers.changes.map(changes_section).transpose()?,
@@ -166,13 +166,15 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, RenderError> {
     let mut page = Page { title: "Convergence report".to_owned(), is_wide: true, ..Page::default() };
     // With a race its sentences stand first, and how it was made at the end.
     if let Some(race) = race {
-        (page.lead, page.footer) = (race::lead(race)?, made);
+        [page.title, page.lead] = race::headline(race)?;
+        page.footer = made;
         sections.push(Section {
             heading: "Is everything as expected?".to_owned(),
             id: "expected".to_owned(),
             mood: Some(verdict.0),
             blocks: vec![Block::Paragraph(verdict.1)],
         });
+        page.links = race::front_links(&sections, studies.len());
     } else {
         (page.lead, page.callout) = (made, Some(verdict));
         // What a report of one study is about.

@@ -1,10 +1,10 @@
-//! Which method should I take? The answers of the race with where they hold, the problems one by one, and the page with every
-//! method.
+//! Which method should I take? The first screen of the front page, and the page with every method.
 
 use crate::case::contender::CONTENDERS;
 use crate::questions::choice::{
-    LARGEST_TAU, SHOWN, cheapest, dot_plot, facts, places_of, practice, reason_words, words_of,
+    LARGEST_TAU, SHOWN, cheapest, dot_plot, facts, family_table, places_of, practice, reason_words, words_of,
 };
+use crate::questions::published_equations::PublishedEquations;
 use crate::questions::sentence;
 use crate::questions::words::capitalised;
 use crate::race::RaceFindings;
@@ -16,30 +16,90 @@ use crate::render::chart::{Chart, ChartAxis, Naming, Series, Style, slots};
 use crate::render::page::{Block, Figure, Page, Section};
 use crate::render::table::{Cell, Mood, Shade, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
-use crate::report::answers::Question;
+use crate::report::answers::found;
+use crate::questions::answers::ReportFindings;
 use crate::report::sections::page_of;
-
-const QUESTION: Question = Question { heading: "Which method should I take?", id: "choice" };
 
 /// The page of every method.
 const PAGE: &str = "race.html";
 
-/// The sentences at the head of the page.
-pub(crate) fn lead(findings: &RaceFindings) -> Result<String, RenderError> {
-    sentence::sentence("race-answers", &facts(findings))
+/// The headline of the front page and what stands below it.
+pub(crate) fn headline(findings: &RaceFindings) -> Result<[String; 2], RenderError> {
+    let facts = facts(findings);
+    Ok([sentence::sentence("race-headline", &facts)?, sentence::sentence("race-lead", &facts)?])
 }
 
-/// The problems one by one, as a figure and a table for each read-out.
-pub(crate) fn section(findings: &RaceFindings) -> Section {
+/// The links at the top of the front page: its sections by a short name, and what else there is.
+pub(crate) fn front_links(sections: &[Section], studies: usize) -> Vec<(String, String)> {
+    const SHORT: [(&str, &str); 9] = [
+        ("choice", "Which method?"),
+        ("cost", "Cost"),
+        ("paper", "The paper"),
+        ("audit", "The equations"),
+        ("locking", "Locking"),
+        ("converges", "Convergence"),
+        ("time-step", "Time step"),
+        ("changes", "Changes"),
+        ("expected", "Trust"),
+    ];
+    let of_section = |(id, words): &(&str, &str)| {
+        sections.iter().any(|one| one.id == *id).then(|| ((*words).to_owned(), format!("#{id}")))
+    };
+    let others = [
+        (format!("{studies} studies"), "studies/index.html".to_owned()),
+        ("Method names".to_owned(), "studies/index.html#names".to_owned()),
+        ("How to read".to_owned(), format!("{PAGE}#rules")),
+        ("race.csv".to_owned(), "tables/race.csv".to_owned()),
+    ];
+    SHORT.iter().filter_map(of_section).chain(others).collect()
+}
+
+/// The first screen: the problems one by one, what to take by the kind of problem, and why to believe it; then the answers of
+/// the groups.
+pub(crate) fn section(race: &RaceFindings, findings: &ReportFindings) -> Result<Section, RenderError> {
+    let facts = facts(race);
+    let trust = [Block::Heading("Why believe it?".to_owned()), Block::List(trust(race, findings)?)];
     let views = ReadOut::BOTH.map(|read_out| {
-        let blocks =
-            vec![Block::Figure(dot_plot(findings, read_out)), Block::Table(practice(findings, read_out))];
-        (format!("Read {}", places_of(read_out)), blocks)
+        let main = vec![Block::Figure(dot_plot(race, read_out))];
+        let aside = [vec![Block::Table(family_table(&facts, read_out))], trust.to_vec()].concat();
+        (format!("Read {}", places_of(read_out)), vec![Block::Beside(main, aside)])
     });
-    let link = format!(
-        "[Every method in every problem]({PAGE}) · [race.csv](tables/race.csv) · [profile.csv](tables/profile.csv)"
-    );
-    Section::new(QUESTION.heading, QUESTION.id, vec![Block::Switch(views.to_vec()), Block::Paragraph(link)])
+    let choice = found(findings, "choice").map(|finding| finding.sentence()).transpose()?.unwrap_or_default();
+    let more = format!("[Every method in every problem]({PAGE}) · [profile.csv](tables/profile.csv)");
+    let blocks = vec![Block::Switch(views.to_vec()), Block::Paragraph(format!("{choice}\n\n{more}"))];
+    Ok(Section::new("Which method should I take?", "choice", blocks))
+}
+
+/// What speaks for the race, and where its choice turns.
+fn trust(race: &RaceFindings, findings: &ReportFindings) -> Result<Vec<String>, RenderError> {
+    let verdict = &findings.verdict;
+    let mut points = vec![format!(
+        "{} of {} [expectations](#expected) met; the race's numbers are pinned by golden values, not by expectations",
+        verdict.met, verdict.expectations
+    )];
+    if let Some(printed) = findings.paper.as_ref().and_then(|paper| paper.printed.as_ref()) {
+        points.push(printed_words(printed));
+    }
+    if findings.cost.as_ref().is_some_and(|cost| cost.peers.is_some()) {
+        points.push("other programs solve [the same column](#cost)".to_owned());
+    }
+    let turns = facts(race).turns();
+    if !turns.is_empty() {
+        points.push(format!("the choice turns with {turns}: [where it holds]({PAGE}#answers)"));
+    }
+    Ok(points)
+}
+
+/// How far the printed equations are from the solution that they are compared with.
+fn printed_words(printed: &PublishedEquations) -> String {
+    let settlements = printed.departures.iter().map(|one| one.settlement);
+    let (least, most) = settlements.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), one| (low.min(one), high.max(one)));
+    let signed = |share: f64| format!("{}{:.1} %", if share < 0.0 { "−" } else { "+" }, 100.0 * share.abs());
+    format!(
+        "the paper's equations as printed settle {} to {} beside Xie & Leo's, before any mesh: [the audit](#paper)",
+        signed(least),
+        signed(most)
+    )
 }
 
 /// Every answer with where it holds.
@@ -131,7 +191,8 @@ fn profile_figure(findings: &RaceFindings, group: Group, read_out: ReadOut) -> F
         points
     };
     let profiles = findings.profiles(group, read_out, RaceQuantity::All);
-    let is_named = |method: &str| method == best || SHOWN.contains(&method.trim_start_matches("TL-"));
+    let is_shown = |method: &str| SHOWN.iter().any(|(name, _)| name.trim_start_matches("TL-") == method);
+    let is_named = |method: &str| method == best || is_shown(method.trim_start_matches("TL-"));
     let (named, others): (Vec<_>, Vec<_>) = profiles.iter().partition(|one| is_named(&one.method));
     let slots = slots(&named.iter().map(|one| one.method.as_str()).collect::<Vec<_>>());
     chart.series.extend(
@@ -174,23 +235,38 @@ pub fn matrix_page(findings: &RaceFindings) -> Page {
             "matrix",
             vec![
                 Block::Table(budget_table(findings)),
-                Block::Paragraph(sentence::sentence("race-rules", &()).unwrap_or_default()),
                 by_read_out(&|one| vec![Block::Table(matrix(&findings.situations, one))]),
             ],
         ),
     ];
+    sections.push(Section::new(
+        "How to read",
+        "rules",
+        vec![Block::Paragraph(sentence::sentence("race-rules", &()).unwrap_or_default())],
+    ));
     if !findings.properties.is_empty() {
         let table = Block::Table(property_table(findings));
         sections.push(Section::new("Properties that are no errors", "properties", vec![table]));
     }
     Page {
         title: "Which method reaches one per cent?".to_owned(),
-        lead: "[Back to the answers](index.html). Every number: [race.csv](tables/race.csv).".to_owned(),
+        links: page_links(&sections),
         sections,
         is_wide: true,
         files: Some("race".to_owned()),
         ..Page::default()
     }
+}
+
+/// The links at the top of the page: back, its sections, and its tables.
+fn page_links(sections: &[Section]) -> Vec<(String, String)> {
+    let link = |words: &str, target: &str| (words.to_owned(), target.to_owned());
+    let of_sections = sections.iter().map(|one| (one.heading.clone(), format!("#{}", one.id)));
+    [link("All answers", "index.html"), link("Studies", "studies/index.html")]
+        .into_iter()
+        .chain(of_sections)
+        .chain([link("Method names", "studies/index.html#names"), link("race.csv", "tables/race.csv"), link("profile.csv", "tables/profile.csv")])
+        .collect()
 }
 
 /// The cost to 1 % of every method in every problem, ms.
@@ -207,14 +283,15 @@ fn matrix(situations: &[Situation], read_out: ReadOut) -> Table {
             let (shade, words) = match (cost.zip(least), situation.reason(entry, &terms)) {
                 (Some((cost, least)), _) => (Shade::of_ratio(cost / least), number::short(1e3 * cost)),
                 (_, Some(Reason::NotApplicable)) => (Shade::Empty, "–".to_owned()),
-                (_, reason) => (Shade::Failed, reason.map_or(String::new(), reason_words)),
+                (_, reason) => (Shade::Failed, reason.map_or("", Reason::word).to_owned()),
             };
             let title = match (&arrival, &entry.refused) {
                 (Some(one), _) => format!("{}: {} cells, {}", entry.contender, one.cells, one.step),
                 (_, Some(why)) => format!("{}: {why}", entry.contender),
                 _ => format!(
-                    "{}: {} cells",
+                    "{}: {} on {} cells",
                     entry.contender,
+                    situation.reason(entry, &terms).map_or(String::new(), reason_words),
                     entry.levels.last().map_or(0, |level| level.cells)
                 ),
             };

@@ -1,6 +1,7 @@
 //! The page that lists all studies by what they ask, and how their numbers were made.
 
-use crate::case::grouping::grouped;
+use crate::case::grouping::{distinct, grouped};
+use crate::case::method_words::method_words;
 use crate::case::quantity::Norm;
 use crate::questions::study_findings::{AllStudies, StudyFindings, StudyQuestion};
 use crate::record::provenance::Provenance;
@@ -21,10 +22,17 @@ pub fn index_page(all: &AllStudies) -> Page {
         })
         .collect();
     sections.push(numbers_section(all));
+    sections.push(names_section(&all.studies));
+    let link = |words: &str, target: &str| (words.to_owned(), target.to_owned());
     Page {
         title: "All studies".to_owned(),
+        links: vec![
+            link("All answers", "../index.html"),
+            link("Method names", "#names"),
+            link("How to read", "#how"),
+        ],
         lead: format!(
-            "{} of {}. [The answers](../index.html).",
+            "{} of {}.",
             count_of(all.studies.len(), "study", "studies"),
             count_of(groups.len(), "question", "questions")
         ),
@@ -109,6 +117,16 @@ fn numbers_section(all: &AllStudies) -> Section {
         ),
     ];
     Section::new("How the numbers were made", "how", blocks)
+}
+
+/// What the names of the methods stand for.
+fn names_section(studies: &[StudyFindings]) -> Section {
+    let runs = studies.iter().flat_map(|study| &study.plain.runs);
+    let names = distinct(runs.map(|run| run.method.as_str()));
+    let rows = names.into_iter().filter_map(|name| {
+        Some(vec![Cell::Code(name.to_owned()), Cell::Text(method_words(name)?)])
+    });
+    Section::new("Method names", "names", vec![Block::Table(Table::of("", columns("method | what it is"), rows))])
 }
 
 /// The program that made the records.

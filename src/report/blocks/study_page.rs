@@ -28,17 +28,27 @@ pub fn study_page(study: &StudyFindings) -> Result<Page, RenderError> {
     for part in PARTS {
         blocks.extend(part(study)?);
     }
+    let name = slug(&study.name);
+    let links = [
+        ("All answers", "../index.html".to_owned()),
+        ("All studies", "index.html".to_owned()),
+        ("Study file", format!("{name}.toml")),
+        ("CSV", format!("tables/{name}.csv")),
+        ("Method names", "index.html#names".to_owned()),
+        ("How to read", "index.html#how".to_owned()),
+    ];
     let page = Page {
         title: study.title.clone(),
+        links: links.map(|(words, target)| (words.to_owned(), target)).to_vec(),
         lead: format!(
-            "{}\n\n{}[All studies](index.html). Run it again: `{}`.",
+            "{}\n\n{}Run it again: `{}`.",
             study.summary,
             answers::lead(study)?,
             study.run_command
         ),
         callout: study.shows_verdict.then(|| expectations::verdict(study)),
         sections: sections(blocks),
-        files: Some(slug(&study.name)),
+        files: Some(name),
         ..Page::default()
     };
     Ok(page.without_idle_figures())

@@ -20,6 +20,7 @@ use crate::questions::answers::ReportFindings;
 use crate::questions::study_findings::{AllStudies, StudyFindings};
 use crate::record::Record;
 use crate::record::calibration::{calibrate, calibration_csv};
+use crate::record::csv::tidy;
 use crate::record::provenance::Machine;
 use crate::record::store::RecordStore;
 use crate::record::whole_file::write_rebuildable;
@@ -256,8 +257,9 @@ fn write_files(
     // Collected before the first error is taken: the same error every time.
     all.studies
         .par_iter()
-        .filter(|study| study.has_page)
-        .map(|study| write_study(&studies, study))
+        .zip(results)
+        .filter(|(study, _)| study.has_page)
+        .map(|(study, results)| write_study(&studies, study, results))
         .collect::<Vec<_>>()
         .into_iter()
         .collect::<anyhow::Result<()>>()?;
@@ -283,7 +285,7 @@ fn write_files(
 fn linked_to_files(page: &str, out: &Path, results: &[StudyResults<'_>]) -> String {
     results.iter().fold(page.to_owned(), |text, result| {
         let listed = (!result.has_page).then(|| "studies/README.md".to_owned());
-        let Some(file) = path_from(out, &result.file).or(listed) else { return text };
+        let Some(file) = file_from(out, result).or(listed) else { return text };
         let name = slug(&result.study.name);
         let text = text.replace(&format!("](studies/{name}.md)"), &format!("]({file})"));
         text.replace(&format!("](studies/{name}.md#figure-{name}-race-all)"), &format!("]({file})"))
@@ -300,7 +302,7 @@ fn write_linked(
     write_both(out, html, markdown, page)?;
     let without = results.iter().filter(|one| !one.has_page);
     let linked = without.fold(render_html(page)?, |text, one| {
-        let file = path_from(out, &one.file).unwrap_or_else(|| "studies/index.html".to_owned());
+        let file = file_from(out, one).unwrap_or_else(|| "studies/index.html".to_owned());
         let name = slug(&one.study.name);
         let text = text.replace(&format!("\"studies/{name}.html\""), &format!("\"{file}\""));
         text.replace(&format!("\"studies/{name}.html#figure-{name}-race-all\""), &format!("\"{file}\""))
@@ -309,10 +311,19 @@ fn write_linked(
     write_page(&out.join(format!("{markdown}.md")), &linked_to_files(&render_markdown(page)?, out, results))
 }
 
-/// The pages of a study with their figures and tables.
-fn write_study(studies: &Path, study: &StudyFindings) -> anyhow::Result<()> {
+/// The pages of a study with their figures and tables, its file, and its measures as CSV.
+fn write_study(studies: &Path, study: &StudyFindings, results: &StudyResults<'_>) -> anyhow::Result<()> {
     let name = slug(&study.name);
     write_both(studies, &name, &name, &study_page(study)?)?;
+    let file = Path::new(&results.file);
+    let text = match shipped_study(&study.name) {
+        Some(shipped) if !file.is_file() => shipped.text.to_owned(),
+        _ => read_text(file)?,
+    };
+    write_page(&studies.join(format!("{name}.toml")), &text)?;
+    let rows = results.records.iter().map(|record| tidy::rows_of(&study.name, record));
+    let csv = tidy::header_line() + &rows.collect::<Result<String, _>>()?;
+    write_page(&studies.join("tables").join(format!("{name}.csv")), &csv)?;
     write_page(&studies.join(format!("{name}.findings.json")), &json_of(&study.plain)?)
 }
 
@@ -321,6 +332,11 @@ fn write_both(folder: &Path, html: &str, markdown: &str, page: &Page) -> anyhow:
     write_page(&folder.join(format!("{html}.html")), &render_html(page)?)?;
     write_page(&folder.join(format!("{markdown}.md")), &render_markdown(page)?)?;
     write_exports(folder, page)
+}
+
+/// The path from the folder of the report to the file of a study; of a shipped one to that of this repository.
+fn file_from(out: &Path, result: &StudyResults<'_>) -> Option<String> {
+    path_from(out, &result.file).or_else(|| path_from(out, &format!("studies/{}.toml", result.study.name)))
 }
 
 /// The path from the folder of the report to the file of a study, if both are below the current folder: the front page
