@@ -171,6 +171,7 @@ impl FamilyAnswer {
 }
 
 /// The studies of the race answer.
+#[expect(clippy::unnecessary_wraps, reason = "every question may refuse a case")]
 fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
     let race = RaceFindings::from_studies(studies.iter().map(|one| (one.study, one.records)));
     Ok(race.filter(|race| !race.situations.is_empty()).map(|race| answer(&race)))

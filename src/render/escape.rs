@@ -101,10 +101,14 @@ pub(crate) fn markdown(text: &str) -> String {
 
 /// The target of a link in Markdown: pages of the report lead to their Markdown form, lists of pages to `README.md`.
 pub(crate) fn markdown_target(target: &str) -> Cow<'_, str> {
-    match target.strip_suffix(".html").filter(|_| !target.contains("://")) {
+    let place = target.find('#').unwrap_or(target.len());
+    let (file, anchor) = target.split_at(place);
+    match file.strip_suffix(".html").filter(|_| !target.contains("://")) {
         Some(page) => match page.strip_suffix("index") {
-            Some(folder) if folder.is_empty() || folder.ends_with('/') => format!("{folder}README.md").into(),
-            _ => format!("{page}.md").into(),
+            Some(folder) if folder.is_empty() || folder.ends_with('/') => {
+                format!("{folder}README.md{anchor}").into()
+            }
+            _ => format!("{page}.md{anchor}").into(),
         },
         None => target.into(),
     }
@@ -136,6 +140,8 @@ mod tests {
             ("https://a.org/b.html", "https://a.org/b.html"),
             ("tables/a.csv", "tables/a.csv"),
             ("#a", "#a"),
+            ("race.html#a", "race.md#a"),
+            ("studies/index.html#a", "studies/README.md#a"),
         ] {
             assert_eq!(markdown_target(html), markdown);
         }

@@ -140,10 +140,12 @@ fn the_race_has_a_cell_for_every_contender_in_every_situation_and_says_why_one_c
     let words: Vec<&str> = views.iter().map(|(word, _)| word.as_str()).collect();
     assert_eq!(words, ["Read at the points", "Read as means of cells"]);
     for (word, blocks) in views {
-        let [Block::Figure(_), Block::Table(cheapest)] = blocks.as_slice() else {
-            panic!("{word}: {blocks:?}")
+        let [Block::Beside(main, aside)] = blocks.as_slice() else { panic!("{word}: {blocks:?}") };
+        let ([Block::Figure(figure)], [Block::Table(families), ..]) = (main.as_slice(), aside.as_slice()) else {
+            panic!("{word}: {main:?} {aside:?}")
         };
-        assert_eq!(cheapest.rows.len(), 1, "a row per problem: {cheapest:?}");
+        let rows = figure.chart.rows.as_ref().map(|rows| rows.rows.len());
+        assert_eq!((rows, families.rows.len()), (Some(1), 1), "a row per problem and per family");
     }
     let race = RaceFindings::from_studies([(&RACE.0, RACE.1.as_slice())]).expect("a race");
     let matrix = render_html(&matrix_page(&race)).expect("a page");
@@ -183,8 +185,13 @@ fn the_first_page_is_short_and_free_of_riddles() {
     let html = render_html(&page).expect("a page");
     assert!(html.len() < 1_500_000, "{} bytes", html.len());
     let markdown = render_markdown(&page).expect("a page");
-    let words = markdown.split_whitespace().count();
-    assert!(words < 4000, "{words} words");
+    let raced = render_markdown(&page_of(&[&RACE, &MANY])).expect("a page");
+    for text in [&markdown, &raced] {
+        let words = text.split_whitespace().count();
+        assert!(words <= 2500, "{words} words");
+    }
+    let before = raced.split("![").next().map_or(0, |head| head.split_whitespace().count());
+    assert!(before <= 250, "{before} words before the first picture");
     for riddle in RIDDLES {
         assert!(!markdown.to_lowercase().contains(riddle), "{riddle}:\n{markdown}");
         assert!(!html.to_lowercase().contains(riddle), "{riddle}");

@@ -231,7 +231,9 @@ impl Chart {
         if panels.is_empty() {
             return self.elements();
         }
-        panels.iter_mut().for_each(|panel| panel.size.width = columns.1);
+        for panel in &mut panels {
+            panel.size.width = columns.1;
+        }
         Ok(side_by_side(&panels.iter().map(Self::elements).collect::<Result<Vec<_>, _>>()?, columns))
     }
 

@@ -267,7 +267,7 @@ pub fn render_markdown(page: &Page) -> Result<String, RenderError> {
     ];
     out.extend(page.callout.as_ref().map(|(mood, text)| markdown_callout(*mood, text)));
     let mark = |section: &Section| section.mood.map(|mood| format!(" {}", mood.mark())).unwrap_or_default();
-    if page.sections.len() > 2 && !(page.is_wide && !page.links.is_empty()) {
+    if page.sections.len() > 2 && (!page.is_wide || page.links.is_empty()) {
         let entry =
             |one: &Section| format!("- [{}](#{}){}", escape::markdown(&one.heading), one.id, mark(one));
         out.push(page.sections.iter().map(entry).collect::<Vec<_>>().join("\n"));

@@ -4,6 +4,8 @@ use crate::case::contender::CONTENDERS;
 use crate::questions::choice::{
     LARGEST_TAU, SHOWN, cheapest, dot_plot, facts, family_table, places_of, practice, reason_words, words_of,
 };
+use crate::questions::answers::ReportFindings;
+use crate::questions::finding::Finding;
 use crate::questions::published_equations::PublishedEquations;
 use crate::questions::sentence;
 use crate::questions::words::capitalised;
@@ -17,7 +19,6 @@ use crate::render::page::{Block, Figure, Page, Section};
 use crate::render::table::{Cell, Mood, Shade, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
 use crate::report::answers::found;
-use crate::questions::answers::ReportFindings;
 use crate::report::sections::page_of;
 
 /// The page of every method.
@@ -58,20 +59,20 @@ pub(crate) fn front_links(sections: &[Section], studies: usize) -> Vec<(String, 
 /// the groups.
 pub(crate) fn section(race: &RaceFindings, findings: &ReportFindings) -> Result<Section, RenderError> {
     let facts = facts(race);
-    let trust = [Block::Heading("Why believe it?".to_owned()), Block::List(trust(race, findings)?)];
+    let trust = [Block::Heading("Why believe it?".to_owned()), Block::List(trust(race, findings))];
     let views = ReadOut::BOTH.map(|read_out| {
         let main = vec![Block::Figure(dot_plot(race, read_out))];
         let aside = [vec![Block::Table(family_table(&facts, read_out))], trust.to_vec()].concat();
         (format!("Read {}", places_of(read_out)), vec![Block::Beside(main, aside)])
     });
-    let choice = found(findings, "choice").map(|finding| finding.sentence()).transpose()?.unwrap_or_default();
+    let choice = found(findings, "choice").map(Finding::sentence).transpose()?.unwrap_or_default();
     let more = format!("[Every method in every problem]({PAGE}) · [profile.csv](tables/profile.csv)");
     let blocks = vec![Block::Switch(views.to_vec()), Block::Paragraph(format!("{choice}\n\n{more}"))];
     Ok(Section::new("Which method should I take?", "choice", blocks))
 }
 
 /// What speaks for the race, and where its choice turns.
-fn trust(race: &RaceFindings, findings: &ReportFindings) -> Result<Vec<String>, RenderError> {
+fn trust(race: &RaceFindings, findings: &ReportFindings) -> Vec<String> {
     let verdict = &findings.verdict;
     let mut points = vec![format!(
         "{} of {} [expectations](#expected) met; the race's numbers are pinned by golden values, not by expectations",
@@ -87,7 +88,7 @@ fn trust(race: &RaceFindings, findings: &ReportFindings) -> Result<Vec<String>, 
     if !turns.is_empty() {
         points.push(format!("the choice turns with {turns}: [where it holds]({PAGE}#answers)"));
     }
-    Ok(points)
+    points
 }
 
 /// How far the printed equations are from the solution that they are compared with.

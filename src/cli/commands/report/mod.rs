@@ -317,7 +317,7 @@ fn write_study(studies: &Path, study: &StudyFindings, results: &StudyResults<'_>
     write_both(studies, &name, &name, &study_page(study)?)?;
     let file = Path::new(&results.file);
     let text = match shipped_study(&study.name) {
-        Some(shipped) if !file.is_file() => shipped.text.to_owned(),
+        Some(shipped) if !file.is_file() => shipped.text.clone(),
         _ => read_text(file)?,
     };
     write_page(&studies.join(format!("{name}.toml")), &text)?;
