@@ -103,6 +103,17 @@ def leader(race, readout):
             "cheapest": sum(one <= 1 for one in ratios[method]), "dearest": max(ratios[method])}
 
 
+def dearest(race, group, readout, method):
+    """Its largest multiple of the least work of any method of any group, in the problems of its group."""
+    problems, own = defaultdict(list), {}
+    for row in race.rows:
+        if (row["readout"], row["time"]) == (readout, "all") and row["cost_1_percent"] is not None:
+            problems[row["situation"]].append(row["cost_1_percent"])
+            if (row["group"], row["method"]) == (group, method):
+                own[row["situation"]] = row["cost_1_percent"]
+    return max([1.0] + [cost / min(problems[problem]) for problem, cost in own.items()])
+
+
 def family_answers(race, group, readout):
     """Per family of a group the methods that tie for the best, how many problems the first reaches, and the range of the least work."""
     table, out = race.table(group, readout), {}
@@ -162,6 +173,7 @@ def main(folder, turn):
                 same(where, [count, len(table)], [one["reached"], one["of"]])
                 same(where, both[method], [one["share"], one["within_two"]])
                 same(f"{where}: interval", inside[method][0], one["interval"])
+                same(f"{where}: dearest", dearest(race, group, readout, method), one["dearest"])
                 same(f"{where}: holds", holds(race, group, readout, method), one["holds"])
                 alike = lambda other: all(a[0] <= b[1] and b[0] <= a[1] for a, b in zip(inside[method], inside[other]))
                 same(f"{where}: alike", sorted(m for m in inside if m != method and alike(m)), sorted(one["alike"]))

@@ -427,7 +427,7 @@ pub fn family_table(facts: &Facts, read_out: ReadOut) -> Table {
     });
     Table::of("If your problem is …, and what 1 % costs", columns("your problem | take | > 1 % in | > ms"), rows)
         .file(format!("families-{}", read_out.name()))
-        .note("+: as many that are as good; ms: the least work, easiest to hardest problem")
+        .note("behind +: others that are as good; ms: the least work, easiest to hardest problem")
 }
 
 /// Methods whose cost stands beside the cheapest.

@@ -3,7 +3,7 @@
 use crate::race::finish::{Budget, OTHER_TOLERANCES, Reason, Terms};
 use crate::race::group::{Group, cost_table};
 use crate::race::profile::Shares;
-use crate::race::situation::Situation;
+use crate::race::situation::{Entry, Situation};
 use crate::record::race_errors::ReadOut;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -61,6 +61,8 @@ pub struct Answer {
     pub within_two: f64,
     /// Nine tenths of resampled shares of situations reached lie in it.
     pub interval: [f64; 2],
+    /// Its largest work over the least of any group, where it reaches 1 %.
+    pub dearest: f64,
     /// Other terms.
     pub holds: Holds,
     /// Methods that these situations do not tell from it: the intervals of both shares overlap.
@@ -94,6 +96,7 @@ pub fn answers(situations: &[Situation], group: Group, read_out: ReadOut) -> Vec
             share: shares.reached,
             within_two: shares.within_two,
             interval: shares.intervals[0],
+            dearest: dearest(situations, group, &shares.method, &usual),
             holds: Holds {
                 time: holds(&times),
                 budget: holds(&budgets),
@@ -111,6 +114,15 @@ pub fn answers(situations: &[Situation], group: Group, read_out: ReadOut) -> Vec
     };
     let of_best = ranked.iter().filter(|one| best_of_all.contains(&one.method.as_str()));
     of_best.cloned().map(answer).collect()
+}
+
+fn dearest(situations: &[Situation], group: Group, method: &str, terms: &Terms) -> f64 {
+    let cost = |situation: &Situation, entry: &Entry| Some(situation.arrival(entry, terms)?.cost);
+    let ratio = |situation: &Situation| {
+        let costs = situation.entries.iter().filter_map(|entry| cost(situation, entry));
+        Some(cost(situation, situation.entry(method)?)? / costs.reduce(f64::min)?)
+    };
+    situations.iter().filter(|one| group.has(one)).filter_map(ratio).fold(1.0, f64::max)
 }
 
 fn missed(situations: &[Situation], group: Group, method: &str, terms: &Terms) -> Vec<Missed> {

@@ -450,7 +450,7 @@ fn a_report_shows_verdicts_and_does_not_gate_on_them() {
         assert!(page.contains("oedometer report short.toml --out made"), "how it was made stands on top");
     }
     let study = read("studies/short.html");
-    let failing = study.split("<nav").next().expect("the head of the page");
+    let failing = study.split("<nav aria-label=\"Contents\"").next().expect("the head of the page");
     assert!(
         failing.contains("callout fail") && failing.contains("pressure"),
         "the red box says why: {failing}"

@@ -92,7 +92,7 @@ fn html_and_markdown_come_from_the_same_page_with_all_figures() {
     let html = render_html(&page).expect("a page");
     let drawn = figures(&page).expect("figures");
     assert!(drawn.len() >= 5, "{} figures", drawn.len());
-    assert_eq!(html.matches("<svg xmlns").count(), drawn.len(), "every figure is in the page itself");
+    assert_eq!(html.matches("<figure").count(), drawn.len(), "every figure is in the page itself");
     assert!(!html.contains("http://") || !html.contains("<link"), "nothing is fetched from elsewhere");
     let markdown = render_markdown(&page).expect("a page");
     for (name, svg) in drawn {

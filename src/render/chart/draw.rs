@@ -10,7 +10,8 @@ use crate::render::chart::svg::{
     Area, Drawn, Font, Px, document, group, layer, line, scripted, spot, stroke, units, write,
 };
 use crate::render::chart::words::{Frame, Space, names, rules, triangles};
-use crate::render::chart::{Chart, ChartAxis, Naming, Style};
+use crate::render::chart::slots::TWIN;
+use crate::render::chart::{Chart, ChartAxis, Naming, Series, Style};
 use crate::render::palette::{FINE_GRID, FRAME, GRID, QUIET, SCREEN, TEXT};
 use crate::render::script::{width, wrap};
 use oedometer_soil::wording::count_of;
@@ -28,6 +29,8 @@ const NOTE: Font = Font { size: 11.0, colour: QUIET.light, is_bold: false };
 /// Width of a figure on the screen of a phone, and the most height of its plot, px.
 const NARROW: f64 = 368.0;
 const NARROW_HEIGHT: f64 = 280.0;
+/// The widest map that a phone shows smaller, px.
+const WIDEST_MAP: f64 = 600.0;
 /// Margin around the figure, px.
 const PAD: f64 = 14.0;
 /// Height of a line in sizes of its font.
@@ -204,7 +207,8 @@ impl Chart {
     pub fn narrow_svg(&self) -> Result<Option<String>, RenderError> {
         let document = match &self.rows {
             Some(rows) => self.document_of(|| rows::elements(self, rows, true)),
-            None if self.size.width <= NARROW => return Ok(None),
+            // A map is read without its letters.
+            None if self.size.width <= if self.field.is_some() { WIDEST_MAP } else { NARROW } => return Ok(None),
             None => {
                 let mut narrow = self.clone();
                 narrow.size.plot_height = self.size.plot_height.min(NARROW_HEIGHT);
@@ -239,17 +243,36 @@ impl Chart {
 
     /// Size of the figure as one plot, and its elements.
     fn elements(&self) -> Result<(Px, String), String> {
-        let layout = Layout::of(self);
+        let chart = &self.with_twins_named();
+        let layout = Layout::of(chart);
         let mut space = Space::within(layout.plot.grown(-2.0));
-        let back = self.axes(&layout)? + &self.lines(&layout, &mut space)?;
-        let markers = self.markers(&layout, &mut space)?;
-        let words = triangles(&mut space, self, &layout)?
-            + &rules(&mut space, self, &layout)?
-            + &names(&mut space, self, &layout)?
-            + &end_names(self, &layout)?;
+        let back = chart.axes(&layout)? + &chart.lines(&layout, &mut space)?;
+        let markers = chart.markers(&layout, &mut space)?;
+        let words = triangles(&mut space, chart, &layout)?
+            + &rules(&mut space, chart, &layout)?
+            + &names(&mut space, chart, &layout)?
+            + &end_names(chart, &layout)?;
         let below = (PAD, layout.plot.bottom + BELOW + 8.0);
-        let around = layout.legend.elements(layout.size, below)? + &self.texts(&layout)?;
+        let around = layout.legend.elements(layout.size, below)? + &chart.texts(&layout)?;
         Ok((layout.size, [back, markers, words, around].concat()))
+    }
+
+    /// The figure in which a series that lies upon an earlier one is named after it too: its line is not seen.
+    fn with_twins_named(&self) -> Self {
+        let mut named = self.clone();
+        for (place, series) in self.series.iter().enumerate() {
+            let counts = |one: &&Series| {
+                matches!(one.style, Style::Line | Style::LineAndMarkers)
+                    && one.points.len() > 1
+                    && !one.name.is_empty()
+                    && !one.name.contains(TWIN)
+            };
+            let is_twin = |one: &&Series| counts(one) && one.name != series.name && one.points == series.points;
+            if let Some(twin) = self.series[..place].iter().find(is_twin).filter(|_| counts(&series)) {
+                named.series[place].name = format!("{}{TWIN}{}", series.name, twin.name);
+            }
+        }
+        named
     }
 
     /// White ground, grid and axes, or a field with its colour bar.

@@ -129,7 +129,7 @@ pub(super) fn elements(chart: &Chart, rows: &ChartRows, is_narrow: bool) -> Resu
                 line(area, &[(PAD, at), (places.width - PAD, at)], stroke(FRAME.light, 0.7))?;
             }
             if is_narrow {
-                narrow_row(area, chart, (place, row), (&places, &looks), top)
+                narrow_row(area, (chart, rows), (place, row), (&places, &looks), top)
             } else {
                 wide_row(area, chart, (place, row), (&places, &looks), top)
             }
@@ -223,17 +223,21 @@ fn wide_row(
 
 fn narrow_row(
     area: &Area<'_>,
-    chart: &Chart,
+    (chart, rows): (&Chart, &ChartRows),
     (place, row): (usize, &ChartRow),
     (places, looks): (&Places, &[Look]),
     top: f64,
 ) -> Drawn {
     let line_at = |number: f64| top + 4.0 + 17.0 * (number + 0.5);
-    // White behind words that cross the lines of the scale.
     write(area, &row.name, (PAD, line_at(0.0)), STRONG, HPos::Left)?;
     line(area, &[(places.scale.0, line_at(1.0)), (places.scale.1, line_at(1.0))], stroke(GRID.light, 0.8))?;
     markers(area, chart, (place, looks), places, line_at(1.0))?;
-    write(area, &row.words.join(" · "), (PAD, line_at(2.0)), FONT, HPos::Left)?;
+    // A number has the head of its column behind it.
+    let with_head = |(word, head): (&String, &String)| {
+        if word.starts_with(|c: char| c.is_ascii_digit()) { format!("{word} {head}") } else { word.clone() }
+    };
+    let words = row.words.iter().zip(&rows.heads).map(with_head).collect::<Vec<_>>().join(" · ");
+    write(area, &words, (PAD, line_at(2.0)), FONT, HPos::Left)?;
     let mut x = PAD + 5.0;
     for (series, (word, look)) in row.without.iter().zip(looks).enumerate().filter(|(_, (word, _))| !word.is_empty()) {
         draw_marker(area, (x, line_at(3.0)), look.marker.unwrap_or(series), 3.8, look.colour)?;
@@ -320,7 +324,7 @@ mod tests {
                 assert!(svg.contains(words), "{words}: {svg}");
             }
         }
-        assert!(wide.contains(">MPM</text>") && narrow.contains(">MPM · 8</text>"), "{narrow}");
+        assert!(wide.contains(">MPM</text>") && narrow.contains(">MPM · 8 cells</text>"), "{narrow}");
         assert!(narrow.contains(&format!("width=\"{NARROW}\"")), "{narrow}");
         // Two equal points stand above each other; a lone one lies on its line.
         let rows = chart().rows.expect("rows");

@@ -24,6 +24,9 @@ const METHODS: [(&str, usize); 19] = [
     ("GIMP-null-space", 20),
 ];
 
+/// What stands between the name of a series and that of another with the same points.
+pub(super) const TWIN: &str = " = ";
+
 /// Numbers of colours and of shapes of markers.
 pub(super) const COLOURS: usize = 7;
 
@@ -40,6 +43,7 @@ pub fn slots(names: &[&str]) -> Vec<usize> {
     let mut slots: Vec<Option<usize>> = Vec::with_capacity(names.len());
     for name in names {
         let method = name.split(", ").next().unwrap_or(name);
+        let method = method.split(TWIN).next().unwrap_or(method);
         let reserved = METHODS.iter().find(|(known, _)| *known == method).map(|(_, slot)| *slot);
         slots.push(reserved.filter(|slot| !slots.contains(&Some(*slot))));
     }

@@ -3,7 +3,9 @@
 
 mod gallery;
 
-use crate::render::chart::{Chart, ChartAxis, ColourField, Rule, Series, Size, SlopeTriangle, Style};
+use crate::render::chart::{
+    Chart, ChartAxis, ColourField, Rule, Series, Size, SlopeTriangle, Style, slots,
+};
 use gallery::{convergence, gallery, nothing, pressure_field};
 
 fn svg(chart: &Chart) -> String {
@@ -271,4 +273,18 @@ fn a_figure_that_says_one_number_is_not_telling() {
     ] {
         assert_eq!(telling(series), wanted, "{what}");
     }
+}
+
+#[test]
+fn a_line_upon_another_names_it_and_keeps_its_look() {
+    let line = |name: &str, end: f64| Series::new(name, vec![(1.0, 0.0), (2.0, end)]);
+    let chart = Chart::new("t", ChartAxis::linear("x"), ChartAxis::linear("y"))
+        .with(line("GC-SRI-patch", 1.0))
+        .with(line("MPM", 1.0))
+        .with(line("GIMP", 2.0));
+    let svg = chart.svg().expect("a figure");
+    for name in ["GC-SRI-patch", "MPM = GC-SRI-patch", "GIMP"] {
+        assert!(svg.contains(&format!(">{name}</text>")), "{name}: {svg}");
+    }
+    assert_eq!(slots(&["MPM = GC-SRI-patch"]), slots(&["MPM"]));
 }

@@ -217,8 +217,11 @@ fn html_table(table: &Table, out: &mut String, written: &mut Written<'_>) -> Res
 
 /// A figure with its number, caption and links to its files.
 fn html_figure(figure: &Figure, out: &mut String, written: &mut Written<'_>) -> Result<(), RenderError> {
-    written.figures += 1;
-    let (name, number, svg) = (&figure.name, written.figures, figure.svg()?);
+    // A figure of the paper has the paper's number.
+    let is_papers = figure.chart.title.starts_with("Fig. ");
+    written.figures += usize::from(!is_papers);
+    let number = if is_papers { String::new() } else { format!("<b>Figure {}.</b> ", written.figures) };
+    let (name, svg) = (&figure.name, figure.svg()?);
     let files = written.files.map_or(String::new(), |_| {
         let svg = format!("<a href=\"figures/{name}.svg\">SVG</a>");
         format!(" <span class=\"files\">{svg} <a href=\"figures/{name}.csv\">data</a></span>")
@@ -235,7 +238,7 @@ fn html_figure(figure: &Figure, out: &mut String, written: &mut Written<'_>) -> 
     let _ = write!(
         out,
         "<figure{whole} id=\"figure-{name}\">\n<div class=\"card{wide}\"{own}>{svg}</div>\n{narrow}\
-         <figcaption><b>Figure {number}.</b> {caption}{files}</figcaption>\n</figure>\n",
+         <figcaption>{number}{caption}{files}</figcaption>\n</figure>\n",
     );
     Ok(())
 }

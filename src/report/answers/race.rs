@@ -14,7 +14,7 @@ use crate::race::finish::{Budget, RaceQuantity, Reason, Terms};
 use crate::race::group::{Group, races};
 use crate::race::situation::{Entry, Situation};
 use crate::record::race_errors::ReadOut;
-use crate::render::chart::{Chart, ChartAxis, Naming, Series, Style, slots};
+use crate::render::chart::{Chart, ChartAxis, Naming, Series, Size, Style, slots};
 use crate::render::page::{Block, Figure, Page, Section};
 use crate::render::table::{Cell, Mood, Shade, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
@@ -121,6 +121,7 @@ fn answer_table(findings: &RaceFindings) -> Table {
             Cell::Percent(one.share),
             interval.into(),
             Cell::Percent(one.within_two),
+            format!("× {}", number::short(one.dearest)).into(),
             Cell::Count(one.alike.len() as u64),
             holds(one.holds.time),
             holds(one.holds.budget),
@@ -128,7 +129,7 @@ fn answer_table(findings: &RaceFindings) -> Table {
             holds(one.holds.read_out),
         ]
     });
-    let heads = "group | read | method | > reaches 1 % | > share | > interval | > within twice the cheapest | > methods not told apart | \
+    let heads = "group | read | method | > reaches 1 % | > share | > interval | > within twice the cheapest | > most work, of any group | > methods not told apart | \
                  each output | half, twice the budget | 0.5, 2, 5 % | read the other way";
     Table::of("The methods to take, and where that holds", columns(heads), rows).note(
         "share: families of problems weigh alike; the method with the largest sum of both shares, and those within 0.03 of it; interval: \
@@ -183,6 +184,7 @@ fn profile_figure(findings: &RaceFindings, group: Group, read_out: ReadOut) -> F
         ChartAxis::linear("share of problems").between(0.0, 1.0),
     );
     chart.naming = Naming::Ends;
+    chart.size = Size { width: 620.0, plot_height: 440.0, ..Size::default() };
     let staircase = |steps: &[(f64, f64)]| {
         let mut points: Vec<(f64, f64)> = Vec::new();
         for (tau, share) in steps.iter().filter(|(tau, _)| *tau <= LARGEST_TAU) {

@@ -213,8 +213,8 @@ mod tests {
                 is(words_of(StudyQuestion::Layers), "mesh-a mesh-b")
             ]
         );
-        assert_eq!(page.lead, "5 studies of 2 questions. [The answers](../index.html).");
-        assert_eq!(index(&results[..1]).lead, "1 study of 1 question. [The answers](../index.html).");
+        assert_eq!(page.lead, "5 studies of 2 questions.");
+        assert_eq!(index(&results[..1]).lead, "1 study of 1 question.");
         assert!(
             page.footer.starts_with("oedometer 0.0.1, sources "),
             "that of the first record: {}",
