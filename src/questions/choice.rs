@@ -33,8 +33,12 @@ pub static CHOICE: Question = Question {
 };
 
 /// The default, the paper's method, one whose mesh follows, and the plainest, each with a word on it.
-pub const SHOWN: [(&str, &str); 4] =
-    [("GC-Bbar-patch", "the default"), (PAPERS, "the paper's"), ("TL-GC-SRI-patch", "mesh follows"), ("MPM", "plain")];
+pub const SHOWN: [(&str, &str); 4] = [
+    ("GC-Bbar-patch", "the default"),
+    (PAPERS, "the paper's"),
+    ("TL-GC-SRI-patch", "mesh follows"),
+    ("MPM", "plain"),
+];
 /// The largest multiple of the least cost that figures show.
 pub const LARGEST_TAU: f64 = 100.0;
 /// Families of problems, in words.
@@ -223,7 +227,11 @@ fn group_answers(race: &RaceFindings) -> Vec<GroupAnswer> {
             methods: answers.iter().map(|one| one.method.clone()).collect(),
             reached: first.reached,
             of: first.of,
-            changes_with: all.into_iter().filter(|(holds, _)| !holds).map(|(_, what)| what.to_owned()).collect(),
+            changes_with: all
+                .into_iter()
+                .filter(|(holds, _)| !holds)
+                .map(|(_, what)| what.to_owned())
+                .collect(),
         })
     };
     let of_group = |group: Group| {
@@ -343,7 +351,15 @@ pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
     let terms = Terms::usual(read_out);
     let methods = plotted(race, read_out);
     let names: Vec<&str> = methods.iter().map(|(name, _)| name.as_str()).collect();
-    let ticks = [(1.0, "× 1"), (2.0, "× 2"), (5.0, "× 5"), (10.0, "× 10"), (20.0, ""), (50.0, ""), (LARGEST_TAU, "× 100")];
+    let ticks = [
+        (1.0, "× 1"),
+        (2.0, "× 2"),
+        (5.0, "× 5"),
+        (10.0, "× 10"),
+        (20.0, ""),
+        (50.0, ""),
+        (LARGEST_TAU, "× 100"),
+    ];
     let mut chart = Chart::new(
         format!("No method is the cheapest everywhere: cost to 1 %, read {}", places_of(read_out)),
         ChartAxis::log10("Work over the cheapest")
@@ -359,7 +375,8 @@ pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
         chart.series.push(Series::new(*name, points.collect()).style(Style::Markers).slot(slot));
     }
     let notes = methods.iter().zip(&chart.series);
-    let notes = notes.map(|((_, word), one)| format!("{word}: {} of {}", one.points.len(), race.situations.len()));
+    let notes =
+        notes.map(|((_, word), one)| format!("{word}: {} of {}", one.points.len(), race.situations.len()));
     chart.rows = Some(ChartRows {
         series: notes.collect(),
         without: "Does not reach 1 %".to_owned(),
@@ -388,13 +405,19 @@ fn plotted_row(situation: &Situation, methods: &[&str], terms: &Terms) -> ChartR
         ],
         None => vec![nearest(situation, terms)],
     };
-    ChartRow { name: situation.title.clone(), family: situation.family.clone(), without: without.collect(), words }
+    ChartRow {
+        name: situation.title.clone(),
+        family: situation.family.clone(),
+        without: without.collect(),
+        words,
+    }
 }
 
 /// How near the most accurate method came where none reaches the tolerance.
 fn nearest(situation: &Situation, terms: &Terms) -> String {
     let finest = situation.entries.iter().filter_map(|entry| {
-        let level = entry.levels.iter().rev().find(|level| level.cells <= situation.most_cells(terms.budget))?;
+        let level =
+            entry.levels.iter().rev().find(|level| level.cells <= situation.most_cells(terms.budget))?;
         Some((level.error(terms)?, level.cells, &entry.contender))
     });
     finest.min_by(|a, b| a.0.total_cmp(&b.0)).map_or("none".to_owned(), |(error, cells, method)| {
@@ -425,9 +448,13 @@ pub fn family_table(facts: &Facts, read_out: ReadOut) -> Table {
             Cell::Text(work.unwrap_or_default()),
         ]
     });
-    Table::of("If your problem is …, and what 1 % costs", columns("your problem | take | > 1 % in | > ms"), rows)
-        .file(format!("families-{}", read_out.name()))
-        .note("behind +: others that are as good; ms: the least work, easiest to hardest problem")
+    Table::of(
+        "If your problem is …, and what 1 % costs",
+        columns("your problem | take | > 1 % in | > ms"),
+        rows,
+    )
+    .file(format!("families-{}", read_out.name()))
+    .note("behind +: others that are as good; ms: the least work, easiest to hardest problem")
 }
 
 /// Methods whose cost stands beside the cheapest.
@@ -455,7 +482,8 @@ pub fn practice(findings: &RaceFindings, read_out: ReadOut) -> Table {
             _ => row.extend(std::iter::repeat_n(Cell::missing("no method reaches 1 %"), 4)),
         }
         let of_total = if group == Group::Total { "TL-" } else { "" };
-        let beside = BESIDE.map(|name| regret(situation, &format!("{of_total}{name}"), &terms, best.map(|one| one.1)));
+        let beside =
+            BESIDE.map(|name| regret(situation, &format!("{of_total}{name}"), &terms, best.map(|one| one.1)));
         row.extend(beside);
         row
     };

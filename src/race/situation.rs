@@ -307,7 +307,9 @@ mod tests {
     #[test]
     fn a_run_that_fails_a_check_reaches_nothing() {
         let (study, mut records) = race();
-        for record in records.iter_mut().filter(|one| one.case.method.to_string() == "GIMP" && one.case.cells == 16) {
+        for record in
+            records.iter_mut().filter(|one| one.case.method.to_string() == "GIMP" && one.case.cells == 16)
+        {
             record.start.as_mut().expect("a start").volume_error = 0.5;
         }
         let situation = Situation::from_records(&study, &records).expect("a race");

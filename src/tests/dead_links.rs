@@ -43,12 +43,14 @@ fn anchors(text: &str) -> Vec<String> {
 /// What is wrong with the links of a page.
 fn dead(page: &Path, text: &str) -> Vec<String> {
     let wrong = |target: &String| {
-        let (file, anchor) = target.split_once('#').map_or((target.as_str(), None), |(file, id)| (file, Some(id)));
+        let (file, anchor) =
+            target.split_once('#').map_or((target.as_str(), None), |(file, id)| (file, Some(id)));
         let path = if file.is_empty() { page.to_owned() } else { page.parent().unwrap_or(page).join(file) };
         let is_there = path.exists();
         let place = anchor.filter(|_| is_there && path.extension().is_some_and(|end| end == "md"));
         let is_found = |id: &str| {
-            let text = if file.is_empty() { text.to_owned() } else { fs::read_to_string(&path).unwrap_or_default() };
+            let text =
+                if file.is_empty() { text.to_owned() } else { fs::read_to_string(&path).unwrap_or_default() };
             anchors(&text).iter().any(|known| known == id)
         };
         !is_there || place.is_some_and(|id| !is_found(id))
@@ -62,7 +64,10 @@ fn every_link_of_the_markdown_leads_to_a_file_and_a_place_in_it() {
     assert!(pages.len() > 30, "{pages:?}");
     let told = pages.iter().flat_map(|page| {
         let text = fs::read_to_string(page).expect("a page");
-        dead(page, &text).into_iter().map(|target| format!("{}: {target}", page.display())).collect::<Vec<_>>()
+        dead(page, &text)
+            .into_iter()
+            .map(|target| format!("{}: {target}", page.display()))
+            .collect::<Vec<_>>()
     });
     let told: Vec<String> = told.collect();
     assert!(told.is_empty(), "dead links:\n{}", told.join("\n"));

@@ -141,7 +141,8 @@ fn the_race_has_a_cell_for_every_contender_in_every_situation_and_says_why_one_c
     assert_eq!(words, ["Read at the points", "Read as means of cells"]);
     for (word, blocks) in views {
         let [Block::Beside(main, aside)] = blocks.as_slice() else { panic!("{word}: {blocks:?}") };
-        let ([Block::Figure(figure)], [Block::Table(families), ..]) = (main.as_slice(), aside.as_slice()) else {
+        let ([Block::Figure(figure)], [Block::Table(families), ..]) = (main.as_slice(), aside.as_slice())
+        else {
             panic!("{word}: {main:?} {aside:?}")
         };
         let rows = figure.chart.rows.as_ref().map(|rows| rows.rows.len());

@@ -6,11 +6,11 @@ use crate::render::chart::ends::{end_names, end_names_width};
 use crate::render::chart::looks::{Legend, Look, draw_marker, field_colour, looks};
 use crate::render::chart::multiples::{SIDE_BY_SIDE, side_by_side};
 use crate::render::chart::rows;
+use crate::render::chart::slots::TWIN;
 use crate::render::chart::svg::{
     Area, Drawn, Font, Px, document, group, layer, line, scripted, spot, stroke, units, write,
 };
 use crate::render::chart::words::{Frame, Space, names, rules, triangles};
-use crate::render::chart::slots::TWIN;
 use crate::render::chart::{Chart, ChartAxis, Naming, Series, Style};
 use crate::render::palette::{FINE_GRID, FRAME, GRID, QUIET, SCREEN, TEXT};
 use crate::render::script::{width, wrap};
@@ -208,7 +208,9 @@ impl Chart {
         let document = match &self.rows {
             Some(rows) => self.document_of(|| rows::elements(self, rows, true)),
             // A map is read without its letters.
-            None if self.size.width <= if self.field.is_some() { WIDEST_MAP } else { NARROW } => return Ok(None),
+            None if self.size.width <= if self.field.is_some() { WIDEST_MAP } else { NARROW } => {
+                return Ok(None);
+            }
             None => {
                 let mut narrow = self.clone();
                 narrow.size.plot_height = self.size.plot_height.min(NARROW_HEIGHT);
@@ -224,8 +226,12 @@ impl Chart {
         document.map(Some)
     }
 
-    fn document_of(&self, draw: impl FnOnce() -> Result<(Px, String), String>) -> Result<String, RenderError> {
-        let drawn = draw().map(|(size, elements)| document(size, &self.title, &self.description(), &elements));
+    fn document_of(
+        &self,
+        draw: impl FnOnce() -> Result<(Px, String), String>,
+    ) -> Result<String, RenderError> {
+        let drawn =
+            draw().map(|(size, elements)| document(size, &self.title, &self.description(), &elements));
         drawn.map_err(|reason| RenderError::Draw { title: self.title.clone(), reason })
     }
 
@@ -267,7 +273,8 @@ impl Chart {
                     && !one.name.is_empty()
                     && !one.name.contains(TWIN)
             };
-            let is_twin = |one: &&Series| counts(one) && one.name != series.name && one.points == series.points;
+            let is_twin =
+                |one: &&Series| counts(one) && one.name != series.name && one.points == series.points;
             if let Some(twin) = self.series[..place].iter().find(is_twin).filter(|_| counts(&series)) {
                 named.series[place].name = format!("{}{TWIN}{}", series.name, twin.name);
             }

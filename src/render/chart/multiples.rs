@@ -160,7 +160,8 @@ mod tests {
         assert_eq!(panels.iter().map(|panel| panel.names.len()).collect::<Vec<_>>(), [1, 0, 0]);
         assert_eq!(panels.iter().map(|panel| panel.triangles.len()).collect::<Vec<_>>(), [0, 0, 1]);
         let part = |height: f64, text: &str| ((450.0, height), text.to_owned());
-        let (size, drawn) = side_by_side(&[part(300.0, "a"), part(320.0, "b"), part(310.0, "c")], SIDE_BY_SIDE);
+        let (size, drawn) =
+            side_by_side(&[part(300.0, "a"), part(320.0, "b"), part(310.0, "c")], SIDE_BY_SIDE);
         assert_eq!(size, (900.0, 630.0), "two in a row, each row as high as its highest");
         let places: Vec<&str> =
             drawn.lines().filter(|line| line.starts_with("<svg")).map(|line| &line[5..20]).collect();

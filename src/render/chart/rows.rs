@@ -67,7 +67,9 @@ impl Places {
             words.map(|word| 0.93 * font.size * width(word)).fold(0.0, f64::max)
         };
         let names = longest(&mut rows.rows.iter().map(|row| row.name.as_str()), FONT);
-        let gutter = longest(&mut rows.rows.iter().flat_map(|row| row.without.iter().map(String::as_str)), SMALL) + 3.0;
+        let gutter =
+            longest(&mut rows.rows.iter().flat_map(|row| row.without.iter().map(String::as_str)), SMALL)
+                + 3.0;
         let whole = |row: &&ChartRow| row.words.len() == rows.heads.len();
         let column = |(place, head): (usize, &String)| {
             let words = rows.rows.iter().filter(whole).map(|row| row.words[place].as_str());
@@ -91,7 +93,12 @@ impl Places {
     }
 
     fn narrow() -> Self {
-        Self { width: NARROW, scale: (PAD + 8.0, NARROW - PAD - 16.0), gutter: (PAD, 0.0), columns: Vec::new() }
+        Self {
+            width: NARROW,
+            scale: (PAD + 8.0, NARROW - PAD - 16.0),
+            gutter: (PAD, 0.0),
+            columns: Vec::new(),
+        }
     }
 
     /// The place of a value on the scale.
@@ -144,7 +151,11 @@ fn tops(rows: &ChartRows, head: f64, is_narrow: bool) -> Vec<f64> {
     let mut tops = vec![head];
     for (place, row) in rows.rows.iter().enumerate() {
         let ends = rows.rows.get(place + 1).is_some_and(|next| next.family != row.family);
-        let lines = if is_narrow { 3.0 + f64::from(u8::from(row.without.iter().any(|word| !word.is_empty()))) } else { 1.0 };
+        let lines = if is_narrow {
+            3.0 + f64::from(u8::from(row.without.iter().any(|word| !word.is_empty())))
+        } else {
+            1.0
+        };
         let height = if is_narrow { 17.0 * lines + 8.0 } else { ROW };
         tops.push(tops[place] + height + if ends { BETWEEN_FAMILIES } else { 0.0 });
     }
@@ -239,7 +250,9 @@ fn narrow_row(
     let words = row.words.iter().zip(&rows.heads).map(with_head).collect::<Vec<_>>().join(" · ");
     write(area, &words, (PAD, line_at(2.0)), FONT, HPos::Left)?;
     let mut x = PAD + 5.0;
-    for (series, (word, look)) in row.without.iter().zip(looks).enumerate().filter(|(_, (word, _))| !word.is_empty()) {
+    for (series, (word, look)) in
+        row.without.iter().zip(looks).enumerate().filter(|(_, (word, _))| !word.is_empty())
+    {
         draw_marker(area, (x, line_at(3.0)), look.marker.unwrap_or(series), 3.8, look.colour)?;
         write(area, word, (x + 8.0, line_at(3.0)), Font { colour: look.colour, ..SMALL }, HPos::Left)?;
         x += 8.0 + SMALL.size * width(word) + 12.0;
@@ -248,17 +261,13 @@ fn narrow_row(
 }
 
 /// The points of a row. Those that lie upon each other stand above and below its line.
-fn markers(
-    area: &Area<'_>,
-    chart: &Chart,
-    (row, looks): (usize, &[Look]),
-    places: &Places,
-    y: f64,
-) -> Drawn {
+fn markers(area: &Area<'_>, chart: &Chart, (row, looks): (usize, &[Look]), places: &Places, y: f64) -> Drawn {
     let in_row = |series: &Series| series.points.iter().find(|(_, at)| *at == row as f64).map(|(x, _)| *x);
     let found = chart.series.iter().zip(looks).enumerate();
     let mut found: Vec<(f64, usize, &Look)> = found
-        .filter_map(|(place, (series, look))| Some((places.x(chart, in_row(series)?), look.marker.unwrap_or(place), look)))
+        .filter_map(|(place, (series, look))| {
+            Some((places.x(chart, in_row(series)?), look.marker.unwrap_or(place), look))
+        })
         .collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut start = 0;
@@ -279,7 +288,8 @@ fn told(chart: &Chart, place: usize, row: &ChartRow) -> String {
     let series = chart.series.iter().enumerate().map(|(number, series)| {
         let at = series.points.iter().find(|(_, at)| *at == place as f64);
         let word = row.without.get(number).map_or("", String::as_str);
-        let value = at.map_or_else(|| word.to_owned(), |(x, _)| format!("× {}", crate::render::number::short(*x)));
+        let value =
+            at.map_or_else(|| word.to_owned(), |(x, _)| format!("× {}", crate::render::number::short(*x)));
         format!("{}: {value}", series.name)
     });
     format!("{}: {}. {}", row.name, row.words.join(", "), series.collect::<Vec<_>>().join("; "))
@@ -293,7 +303,9 @@ mod tests {
     fn chart() -> Chart {
         let mut chart = Chart::new(
             "no method is the cheapest everywhere",
-            ChartAxis::log10("work over the least").between(1.0, 100.0).with_labelled_ticks([(1.0, "×1".to_owned())]),
+            ChartAxis::log10("work over the least")
+                .between(1.0, 100.0)
+                .with_labelled_ticks([(1.0, "×1".to_owned())]),
             ChartAxis::linear(""),
         )
         .with(Series::new("MPM", vec![(1.0, 0.0)]).style(Style::Markers))
@@ -318,7 +330,8 @@ mod tests {
 
     #[test]
     fn a_row_has_its_markers_reasons_and_words_and_a_phone_has_them_below_each_other() {
-        let (wide, narrow) = (chart().svg().expect("a figure"), chart().narrow_svg().expect("drawn").expect("narrow"));
+        let (wide, narrow) =
+            (chart().svg().expect("a figure"), chart().narrow_svg().expect("drawn").expect("narrow"));
         for svg in [&wide, &narrow] {
             for words in [">MPM, 2 of 2</text>", ">locks</text>", ">b</text>", ">none</text>", "× 50"] {
                 assert!(svg.contains(words), "{words}: {svg}");

@@ -3,9 +3,7 @@
 
 mod gallery;
 
-use crate::render::chart::{
-    Chart, ChartAxis, ColourField, Rule, Series, Size, SlopeTriangle, Style, slots,
-};
+use crate::render::chart::{Chart, ChartAxis, ColourField, Rule, Series, Size, SlopeTriangle, Style, slots};
 use gallery::{convergence, gallery, nothing, pressure_field};
 
 fn svg(chart: &Chart) -> String {

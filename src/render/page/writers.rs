@@ -92,7 +92,11 @@ fn html_links(links: &[(String, String)]) -> String {
         format!("<a href=\"{}\">{}</a>\n", escape::plain_html(target), escape::html(words))
     };
     let links: String = links.iter().map(link).collect();
-    if links.is_empty() { links } else { format!("<nav class=\"links\" aria-label=\"Pages\">\n{links}</nav>\n") }
+    if links.is_empty() {
+        links
+    } else {
+        format!("<nav class=\"links\" aria-label=\"Pages\">\n{links}</nav>\n")
+    }
 }
 
 /// Sections that a list of contents may have: a longer one hides the page on a phone.

@@ -1,10 +1,10 @@
 //! Which method should I take? The first screen of the front page, and the page with every method.
 
 use crate::case::contender::CONTENDERS;
+use crate::questions::answers::ReportFindings;
 use crate::questions::choice::{
     LARGEST_TAU, SHOWN, cheapest, dot_plot, facts, family_table, places_of, practice, reason_words, words_of,
 };
-use crate::questions::answers::ReportFindings;
 use crate::questions::finding::Finding;
 use crate::questions::published_equations::PublishedEquations;
 use crate::questions::sentence;
@@ -94,7 +94,8 @@ fn trust(race: &RaceFindings, findings: &ReportFindings) -> Vec<String> {
 /// How far the printed equations are from the solution that they are compared with.
 fn printed_words(printed: &PublishedEquations) -> String {
     let settlements = printed.departures.iter().map(|one| one.settlement);
-    let (least, most) = settlements.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), one| (low.min(one), high.max(one)));
+    let (least, most) = settlements
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), one| (low.min(one), high.max(one)));
     let signed = |share: f64| format!("{}{:.1} %", if share < 0.0 { "−" } else { "+" }, 100.0 * share.abs());
     format!(
         "the paper's equations as printed settle {} to {} beside Xie & Leo's, before any mesh: [the audit](#paper)",
@@ -268,7 +269,11 @@ fn page_links(sections: &[Section]) -> Vec<(String, String)> {
     [link("All answers", "index.html"), link("Studies", "studies/index.html")]
         .into_iter()
         .chain(of_sections)
-        .chain([link("Method names", "studies/index.html#names"), link("race.csv", "tables/race.csv"), link("profile.csv", "tables/profile.csv")])
+        .chain([
+            link("Method names", "studies/index.html#names"),
+            link("race.csv", "tables/race.csv"),
+            link("profile.csv", "tables/profile.csv"),
+        ])
         .collect()
 }
 

@@ -123,10 +123,14 @@ fn numbers_section(all: &AllStudies) -> Section {
 fn names_section(studies: &[StudyFindings]) -> Section {
     let runs = studies.iter().flat_map(|study| &study.plain.runs);
     let names = distinct(runs.map(|run| run.method.as_str()));
-    let rows = names.into_iter().filter_map(|name| {
-        Some(vec![Cell::Code(name.to_owned()), Cell::Text(method_words(name)?)])
-    });
-    Section::new("Method names", "names", vec![Block::Table(Table::of("", columns("method | what it is"), rows))])
+    let rows = names
+        .into_iter()
+        .filter_map(|name| Some(vec![Cell::Code(name.to_owned()), Cell::Text(method_words(name)?)]));
+    Section::new(
+        "Method names",
+        "names",
+        vec![Block::Table(Table::of("", columns("method | what it is"), rows))],
+    )
 }
 
 /// The program that made the records.

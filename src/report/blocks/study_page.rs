@@ -40,12 +40,7 @@ pub fn study_page(study: &StudyFindings) -> Result<Page, RenderError> {
     let page = Page {
         title: study.title.clone(),
         links: links.map(|(words, target)| (words.to_owned(), target)).to_vec(),
-        lead: format!(
-            "{}\n\n{}Run it again: `{}`.",
-            study.summary,
-            answers::lead(study)?,
-            study.run_command
-        ),
+        lead: format!("{}\n\n{}Run it again: `{}`.", study.summary, answers::lead(study)?, study.run_command),
         callout: study.shows_verdict.then(|| expectations::verdict(study)),
         sections: sections(blocks),
         files: Some(name),
