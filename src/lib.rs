@@ -184,6 +184,7 @@ pub use case::solver::SolverName;
 pub use case::{Case, Task};
 pub use cli::{main, main_with};
 pub use golden::compare::compare;
+pub use golden::measure::{GoldenKey, Measure};
 pub use golden::tolerance::{LastDigit, spread_by_group};
 pub use golden::{GoldenError, GoldenFile, values_of};
 pub use import::SampledState;

@@ -4,10 +4,12 @@
 //! is dominated by them; one that pays for one with the other is a trade. A long list of differences says less than one
 //! line a kind, with what its values have in common and its largest change.
 
-use crate::golden::{GoldenFile, is_counter, parts};
+use crate::golden::GoldenFile;
+use crate::golden::measure::{GoldenKey, Measure, TimeFactor};
 use oedometer_convergence::ParetoChange;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// What happened to a value, the worst first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
@@ -41,8 +43,9 @@ impl Change {
 /// One value that is not what it was.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Difference {
-    /// Case and measure.
-    pub name: String,
+    /// Which value.
+    #[serde(rename = "name")]
+    pub key: GoldenKey,
     /// What happened.
     pub change: Change,
     /// Golden value.
@@ -62,11 +65,10 @@ impl Difference {
     pub fn relative_change(&self) -> Option<f64> {
         let (golden, found) = (self.golden?, self.found?);
         let largest = golden.abs().max(found.abs());
-        let measure = parts(&self.name).1;
-        let size = match measure {
-            _ if measure.starts_with("water balance") => 1.0,
-            _ if measure.contains("T_v=") => largest.max(LEAST_SIZE),
-            _ => largest,
+        let size = match self.key.measure {
+            Measure::Water(_) => 1.0,
+            Measure::Error { .. } => largest.max(LEAST_SIZE),
+            Measure::Steps | Measure::CriticalStep { .. } => largest,
         };
         let change = (found - golden).abs() / size;
         Some(if change.is_nan() { f64::INFINITY } else { change })
@@ -75,8 +77,7 @@ impl Difference {
     /// How many times its golden value it is, from the double on: a change over the larger value says nothing of that.
     pub fn growth(&self) -> Option<f64> {
         let times = self.found?.abs() / self.golden?.abs();
-        let is_share = parts(&self.name).1.starts_with("water balance");
-        (times >= 2.0 && times.is_finite() && !is_share).then_some(times)
+        (times >= 2.0 && times.is_finite() && !self.key.measure.is_water()).then_some(times)
     }
 
     /// The order of a list: kinds by how bad they are, then the largest relative change first.
@@ -85,40 +86,36 @@ impl Difference {
         self.change
             .cmp(&other.change)
             .then_with(|| size(other).total_cmp(&size(self)))
-            .then_with(|| self.name.cmp(&other.name))
+            .then_with(|| self.key.cmp(&other.key))
     }
 }
 
-/// Whether a smaller value is better: true of errors and counters, not of critical steps.
-fn is_better_if_smaller(name: &str) -> bool {
-    !parts(name).1.ends_with("critical step")
-}
-
-/// Every difference beyond the tolerance `atol + rtol · max(|x|, |g|)`, the worst first; a value that is
-/// not a finite number never agrees.
-pub fn compare(golden: &GoldenFile, found: &BTreeMap<String, f64>) -> Vec<Difference> {
+/// Every difference beyond the tolerance, the worst first; a value that is not a finite number never agrees.
+pub fn compare(golden: &GoldenFile, found: &BTreeMap<GoldenKey, f64>) -> Vec<Difference> {
     let mut differences = Vec::new();
-    for (name, value) in &golden.values {
-        let present = found.get(name).copied();
+    for (key, value) in &golden.values {
+        let present = found.get(key).copied();
         let largest = value.abs().max(present.map_or(0.0, f64::abs));
-        let tolerance = golden.tolerance(name, largest);
+        let tolerance = golden.tolerance(key, largest);
         let change = match present {
             None => Change::Missing,
             Some(present) if tolerance.is_finite() && (present - value).abs() <= tolerance => continue,
-            Some(present) if present.abs() < value.abs() && is_better_if_smaller(name) => Change::Stale,
+            Some(present) if present.abs() < value.abs() && key.measure.is_better_if_smaller() => {
+                Change::Stale
+            }
             Some(_) => Change::Moved,
         };
         differences.push(Difference {
-            name: name.clone(),
+            key: key.clone(),
             change,
             golden: Some(*value),
             found: present,
             tolerance,
         });
     }
-    for (name, value) in found.iter().filter(|(name, _)| !golden.values.contains_key(*name)) {
+    for (key, value) in found.iter().filter(|(key, _)| !golden.values.contains_key(*key)) {
         differences.push(Difference {
-            name: name.clone(),
+            key: key.clone(),
             change: Change::Extra,
             golden: None,
             found: Some(*value),
@@ -132,11 +129,11 @@ pub fn compare(golden: &GoldenFile, found: &BTreeMap<String, f64>) -> Vec<Differ
 
 /// Marks values that fell in a case in which another value moved: these do not count as improvements.
 fn tell_apart_what_is_paid_for(differences: &mut [Difference]) {
-    let case_of = |difference: &Difference| parts(&difference.name).0.to_owned();
     let moved = |difference: &&Difference| difference.change == Change::Moved;
-    let worse: BTreeSet<String> = differences.iter().filter(moved).map(case_of).collect();
+    let worse: BTreeSet<Arc<str>> =
+        differences.iter().filter(moved).map(|difference| difference.key.case.clone()).collect();
     for difference in differences.iter_mut().filter(|difference| difference.change == Change::Stale) {
-        if worse.contains(parts(&difference.name).0) {
+        if worse.contains(&difference.key.case) {
             difference.change = Change::Smaller;
         }
     }
@@ -149,7 +146,7 @@ pub struct CaseChange {
     pub case: String,
     /// Accuracy and cost together.
     pub change: ParetoChange,
-    /// Largest ratio of a work counter to its golden value; 1 where none changed.
+    /// Ratio of the steps to their golden number; 1 where that did not change.
     pub cost_ratio: f64,
     /// Errors that grew beyond their tolerance.
     pub worse: usize,
@@ -177,10 +174,10 @@ impl CaseChange {
 pub fn case_changes(differences: &[Difference]) -> Vec<CaseChange> {
     let mut changes: Vec<CaseChange> = Vec::new();
     for difference in differences {
-        let (case, measure) = parts(&difference.name);
-        let place = changes.iter().position(|change| change.case == case).unwrap_or_else(|| {
+        let case = &difference.key.case;
+        let place = changes.iter().position(|change| *change.case == **case).unwrap_or_else(|| {
             changes.push(CaseChange {
-                case: case.to_owned(),
+                case: case.to_string(),
                 change: ParetoChange::Same,
                 cost_ratio: 1.0,
                 worse: 0,
@@ -191,11 +188,8 @@ pub fn case_changes(differences: &[Difference]) -> Vec<CaseChange> {
         });
         let change = &mut changes[place];
         match (difference.golden, difference.found) {
-            (Some(golden), Some(found)) if is_counter(measure) => {
-                let ratio = found / golden;
-                if (ratio - 1.0).abs() > (change.cost_ratio - 1.0).abs() {
-                    change.cost_ratio = ratio;
-                }
+            (Some(golden), Some(found)) if difference.key.measure == Measure::Steps => {
+                change.cost_ratio = found / golden;
             }
             (Some(_), Some(_)) if matches!(difference.change, Change::Stale | Change::Smaller) => {
                 change.better += 1;
@@ -218,13 +212,13 @@ pub fn case_changes(differences: &[Difference]) -> Vec<CaseChange> {
     changes
 }
 
-/// Cases that only the first of two states has, and those that only the second has, by the names of their values.
+/// Cases that only the first of two states has, and those that only the second has, by their values.
 pub fn cases_apart<'a>(
-    before: impl IntoIterator<Item = &'a String>,
-    after: impl IntoIterator<Item = &'a String>,
+    before: impl IntoIterator<Item = &'a GoldenKey>,
+    after: impl IntoIterator<Item = &'a GoldenKey>,
 ) -> [Vec<String>; 2] {
-    let before: BTreeSet<&str> = before.into_iter().map(|name| parts(name).0).collect();
-    let after: BTreeSet<&str> = after.into_iter().map(|name| parts(name).0).collect();
+    let before: BTreeSet<&str> = before.into_iter().map(|key| &*key.case).collect();
+    let after: BTreeSet<&str> = after.into_iter().map(|key| &*key.case).collect();
     let only = |one: &BTreeSet<&str>, other: &BTreeSet<&str>| {
         one.difference(other).map(|case| (*case).to_owned()).collect()
     };
@@ -251,14 +245,16 @@ pub struct DifferenceGroup {
     pub place: Option<String>,
 }
 
-/// Words of a value's name, each marked with the side it stands on.
-fn words(name: &str) -> BTreeSet<(NameSide, &str)> {
-    let (case, measure) = parts(name);
+/// Words of a case and of a measure with its time, each marked with the side it stands on.
+fn words(key: &GoldenKey) -> BTreeSet<(NameSide, String)> {
     // Variants stand in brackets behind the label: `(u-p, implicit drag)`.
-    let (label, variants) = case.split_once(" (").unwrap_or((case, ""));
+    let (label, variants) = key.case.split_once(" (").unwrap_or((&*key.case, ""));
     let variants = variants.trim_end_matches(')').split(", ").filter(|variant| !variant.is_empty());
-    let of_case = label.split_whitespace().chain(variants).map(|word| (NameSide::Case, word));
-    of_case.chain(measure.split_whitespace().map(|word| (NameSide::Measure, word))).collect()
+    let of_case = label.split_whitespace().chain(variants).map(|word| (NameSide::Case, word.to_owned()));
+    let measure = key.measure.to_string();
+    let time = key.time.map(|TimeFactor(time)| format!("T_v={time}"));
+    let of_measure = measure.split(' ').map(str::to_owned).chain(time);
+    of_case.chain(of_measure.map(|word| (NameSide::Measure, word))).collect()
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -267,34 +263,37 @@ enum NameSide {
     Measure,
 }
 
-/// The groups of differences that are in their order, the worst group first. `all` are the names of
-/// every value that was compared.
+/// The groups of differences that are in their order, the worst group first. `all` are the keys of every value that was
+/// compared.
 pub fn groups_of<'a>(
     differences: &[Difference],
-    all: impl IntoIterator<Item = &'a str>,
+    all: impl IntoIterator<Item = &'a GoldenKey>,
 ) -> Vec<DifferenceGroup> {
-    let mut everywhere: BTreeMap<(NameSide, &str), usize> = BTreeMap::new();
+    if differences.is_empty() {
+        return Vec::new();
+    }
+    let mut everywhere: BTreeMap<(NameSide, String), usize> = BTreeMap::new();
     let mut number = 0;
-    for name in all {
+    for key in all {
         number += 1;
-        for word in words(name) {
+        for word in words(key) {
             *everywhere.entry(word).or_default() += 1;
         }
     }
     let mut groups = Vec::new();
     for of_kind in differences.chunk_by(|a, b| a.change == b.change) {
         let Some(worst) = of_kind.first() else { continue };
-        let mut shared = words(&worst.name);
+        let mut shared = words(&worst.key);
         for difference in of_kind {
-            let words = words(&difference.name);
+            let words = words(&difference.key);
             shared.retain(|word| words.contains(word));
         }
         shared.retain(|word| everywhere.get(word).is_none_or(|count| *count < number));
-        let of = |side| shared.iter().filter(|word| word.0 == side).map(|word| word.1.to_owned()).collect();
+        let of = |side| shared.iter().filter(|word| word.0 == side).map(|word| word.1.clone()).collect();
         groups.push(DifferenceGroup {
             change: worst.change,
             values: of_kind.len(),
-            cases: of_kind.iter().map(|difference| parts(&difference.name).0).collect::<BTreeSet<_>>().len(),
+            cases: of_kind.iter().map(|difference| &difference.key.case).collect::<BTreeSet<_>>().len(),
             shared_by_cases: of(NameSide::Case),
             shared_by_measures: of(NameSide::Measure),
             worst: worst.clone(),
@@ -307,77 +306,87 @@ pub fn groups_of<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::golden::measure::key;
 
-    fn golden(values: &[(&str, f64)]) -> GoldenFile {
-        let values = values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
-        GoldenFile { values, ..GoldenFile::of("study", &[], "test") }
+    const PRESSURE: &str = "pressure points terzaghi";
+    const SETTLEMENT: &str = "settlement surface terzaghi";
+
+    /// The error of the pressure of a case.
+    fn error(case: &str) -> GoldenKey {
+        key(case, 0.1, PRESSURE)
+    }
+
+    fn golden(values: &[(GoldenKey, f64)]) -> GoldenFile {
+        GoldenFile { values: values.iter().cloned().collect(), ..GoldenFile::of("study", &[], "test") }
     }
 
     #[test]
     fn a_value_has_grown_from_the_double_on_and_a_balance_never() {
-        let growth = |name: &str, golden: f64, found: f64| difference(name, golden, found).growth();
-        assert_eq!(growth("a | pressure points l2", 2e-3, 7e-3), Some(3.5));
-        assert_eq!(growth("a | pressure points l2", 2e-3, -4e-3), Some(2.0));
-        assert_eq!(growth("a | pressure points l2", 2e-3, 3.99e-3), None);
-        assert_eq!(growth("a | pressure points l2", 0.0, 1.0), None, "no share of nothing");
-        assert_eq!(growth("a | water balance", 1e-9, 1e-3), None, "a share already");
+        let growth = |key: GoldenKey, golden: f64, found: f64| difference(key, golden, found).growth();
+        assert_eq!(growth(error("a"), 2e-3, 7e-3), Some(3.5));
+        assert_eq!(growth(error("a"), 2e-3, -4e-3), Some(2.0));
+        assert_eq!(growth(error("a"), 2e-3, 3.99e-3), None);
+        assert_eq!(growth(error("a"), 0.0, 1.0), None, "no share of nothing");
+        assert_eq!(growth(key("a", 0.1, "water balance"), 1e-9, 1e-3), None, "a share already");
     }
 
-    fn changes(golden: &GoldenFile, found: &[(&str, f64)]) -> Vec<(String, Change)> {
-        let found = found.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
-        compare(golden, &found).into_iter().map(|difference| (difference.name, difference.change)).collect()
+    fn changes(golden: &GoldenFile, found: &[(GoldenKey, f64)]) -> Vec<(GoldenKey, Change)> {
+        let found = found.iter().cloned().collect();
+        compare(golden, &found).into_iter().map(|difference| (difference.key, difference.change)).collect()
     }
 
     #[test]
     fn a_value_within_its_tolerance_is_silent_and_ten_times_beyond_is_named_alone() {
-        let golden = golden(&[("a", 1.0), ("b", 2.0)]);
-        assert_eq!(changes(&golden, &[("a", 1.0 + 0.9e-9), ("b", 2.0)]), []);
-        assert_eq!(changes(&golden, &[("a", 1.0 + 1e-8), ("b", 2.0)]), [("a".to_owned(), Change::Moved)]);
-        assert_eq!(changes(&golden, &[("a", 1.0), ("b", 2.0 - 2e-8)]), [("b".to_owned(), Change::Stale)]);
+        let [a, b] = ["a", "b"].map(error);
+        let golden = golden(&[(a.clone(), 1.0), (b.clone(), 2.0)]);
+        let found = |one: f64, other: f64| changes(&golden, &[(a.clone(), one), (b.clone(), other)]);
+        assert_eq!(found(1.0 + 0.9e-6, 2.0), []);
+        assert_eq!(found(1.0 + 1e-5, 2.0), [(a.clone(), Change::Moved)]);
+        assert_eq!(found(1.0, 2.0 - 2e-5), [(b.clone(), Change::Stale)]);
     }
 
     #[test]
     fn missing_extra_and_no_numbers_never_agree() {
-        let golden = golden(&[("a", 1.0), ("b", 2.0)]);
-        let found = changes(&golden, &[("a", f64::NAN), ("c", 3.0)]);
-        let expected = [("a", Change::Moved), ("b", Change::Missing), ("c", Change::Extra)];
-        assert_eq!(found, expected.map(|(name, change)| (name.to_owned(), change)));
+        let [a, b, c] = ["a", "b", "c"].map(error);
+        let golden = golden(&[(a.clone(), 1.0), (b.clone(), 2.0)]);
+        let found = changes(&golden, &[(a.clone(), f64::NAN), (c.clone(), 3.0)]);
+        assert_eq!(found, [(a, Change::Moved), (b, Change::Missing), (c, Change::Extra)]);
     }
 
     #[test]
     fn the_largest_relative_change_comes_first_and_what_is_no_number_before_it() {
-        let pressure = |case: &str| format!("{case} | pressure points l2 terzaghi T_v=0.1");
-        let (small, large, none) = (pressure("a"), pressure("b"), pressure("c"));
-        let balance = "d | water balance T_v=0.1";
-        let golden =
-            golden(&[(&small, 1e3), (&large, 1e-4), (&none, 1.0), (balance, 1e-15), ("e | steps", 1.0)]);
-        let found =
-            [(&*small, 1.01e3), (&*large, 2e-4), (&*none, f64::NAN), (balance, 1e-11), ("e | steps", 1.0)];
-        let order: Vec<String> = changes(&golden, &found).into_iter().map(|(name, _)| name).collect();
+        let (small, large, none) = (error("a"), error("b"), error("c"));
+        let (balance, steps) = (key("d", 0.1, "water balance"), key("e", None, "steps"));
+        let keys = [&small, &large, &none, &balance, &steps].map(Clone::clone);
+        let with = |values: [f64; 5]| keys.clone().into_iter().zip(values).collect::<Vec<_>>();
+        let golden = golden(&with([1e3, 1e-4, 1.0, 1e-15, 1.0]));
+        let found = with([1.01e3, 2e-4, f64::NAN, 1e-9, 1.0]);
+        let order: Vec<GoldenKey> = changes(&golden, &found).into_iter().map(|(key, _)| key).collect();
         // One percent of a thousand is more than 1e-4 and weighs less than a doubling of 1e-4; a balance
-        // that is a thousandth of a millionth of the water weighs least, though it grew by ten thousand.
-        assert_eq!(order, [none.as_str(), &large, &small, balance]);
+        // that is a thousandth of a millionth of the water weighs least, though it grew by a million.
+        assert_eq!(order, [none, large, small, balance]);
     }
 
     #[test]
     fn a_smaller_error_is_no_better_one_where_the_case_got_worse_elsewhere() {
-        let names = ["a | pressure T_v=0.1", "a | settlement T_v=0.1", "b | pressure T_v=0.1"];
-        let golden = golden(&names.map(|name| (name, 1.0)));
-        let found = changes(&golden, &[(names[0], 0.5), (names[1], 1.1), (names[2], 0.5)]);
-        let expected = [(names[1], Change::Moved), (names[0], Change::Smaller), (names[2], Change::Stale)];
-        assert_eq!(found, expected.map(|(name, change)| (name.to_owned(), change)));
+        let keys = [error("a"), key("a", 0.1, SETTLEMENT), error("b")];
+        let golden = golden(&keys.clone().map(|key| (key, 1.0)));
+        let [first, second, third] = keys;
+        let found = [(first.clone(), 0.5), (second.clone(), 1.1), (third.clone(), 0.5)];
+        let expected = [(second, Change::Moved), (first, Change::Smaller), (third, Change::Stale)];
+        assert_eq!(changes(&golden, &found), expected);
     }
 
     #[test]
     fn a_critical_step_that_falls_is_no_better_one() {
-        let fallen = |name: &str| changes(&golden(&[(name, 1.0)]), &[(name, 0.5)])[0].1;
-        assert_eq!(fallen("a | predicted critical step"), Change::Moved);
-        assert_eq!(fallen("a | pressure points l2 terzaghi T_v=0.1"), Change::Stale);
+        let fallen = |key: GoldenKey| changes(&golden(&[(key.clone(), 1.0)]), &[(key, 0.5)])[0].1;
+        assert_eq!(fallen(key("a", None, "predicted critical step")), Change::Moved);
+        assert_eq!(fallen(error("a")), Change::Stale);
     }
 
-    fn difference(name: &str, golden: f64, found: f64) -> Difference {
+    fn difference(key: GoldenKey, golden: f64, found: f64) -> Difference {
         Difference {
-            name: name.to_owned(),
+            key,
             change: if found.abs() < golden.abs() { Change::Stale } else { Change::Moved },
             golden: Some(golden),
             found: Some(found),
@@ -393,73 +402,65 @@ mod tests {
 
     #[test]
     fn accuracy_and_cost_are_judged_together() {
-        let (steps, error, other) = ("a | steps", "a | pressure T_v=0.1", "a | settlement T_v=0.1");
-        let dominated = only(&[difference(steps, 100.0, 120.0), difference(error, 0.1, 0.2)]);
+        let steps = |before: f64, after: f64| difference(key("a", None, "steps"), before, after);
+        let pressure = |after: f64| difference(error("a"), 0.1, after);
+        let dominated = only(&[steps(100.0, 120.0), pressure(0.2)]);
         assert_eq!((dominated.change, dominated.is_stale()), (ParetoChange::Dominated, false));
-        let worse = only(&[difference(error, 0.1, 0.2)]);
+        assert_eq!(dominated.cost_ratio, 1.2);
+        let worse = only(&[pressure(0.2)]);
         assert_eq!((worse.change, worse.is_stale()), (ParetoChange::Dominated, false));
-        let better = only(&[difference(steps, 100.0, 50.0), difference(error, 0.1, 0.05)]);
+        let better = only(&[steps(100.0, 50.0), pressure(0.05)]);
         assert_eq!((better.change, better.is_stale()), (ParetoChange::Better, true));
-        let trade = only(&[difference(steps, 100.0, 50.0), difference(error, 0.1, 0.2)]);
+        let trade = only(&[steps(100.0, 50.0), pressure(0.2)]);
         assert_eq!((trade.change, trade.is_stale()), (ParetoChange::Traded, true));
         // At the same cost some errors fell and some grew: a change of method, not a trade of cost for accuracy.
-        let mixed = only(&[difference(error, 0.1, 0.2), difference(other, 0.1, 0.05)]);
+        let mixed = only(&[pressure(0.2), difference(key("a", 0.1, SETTLEMENT), 0.1, 0.05)]);
         assert_eq!((mixed.change, mixed.is_stale()), (ParetoChange::Traded, false));
     }
 
     #[test]
     fn what_is_no_number_never_agrees() {
-        let golden = GoldenFile {
-            values: BTreeMap::from([("a | pressure T_v=0.1".to_owned(), 0.1)]),
-            ..GoldenFile::of("study", &[], "test")
-        };
+        let golden = golden(&[(error("a"), 0.1)]);
         for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            let found = BTreeMap::from([("a | pressure T_v=0.1".to_owned(), wrong)]);
-            assert_eq!(compare(&golden, &found)[0].change, Change::Moved, "{wrong}");
+            assert_eq!(changes(&golden, &[(error("a"), wrong)])[0].1, Change::Moved, "{wrong}");
         }
     }
 
     #[test]
     fn what_has_no_partner_cannot_be_compared() {
-        let missing = Difference { found: None, ..difference("a | pressure T_v=0.1", 0.1, 0.1) };
+        let missing = Difference { found: None, ..difference(error("a"), 0.1, 0.1) };
         assert_eq!(only(&[missing]).change, ParetoChange::NotComparable);
-        let from_nothing =
-            only(&[difference("a | steps", 0.0, 5.0), difference("a | pressure T_v=1", 0.2, 0.1)]);
+        let steps = |case: &str, before: f64| difference(key(case, None, "steps"), before, 2.0);
+        let from_nothing = only(&[steps("a", 0.0), difference(error("a"), 0.2, 0.1)]);
         assert_eq!((from_nothing.change, from_nothing.is_stale()), (ParetoChange::NotComparable, false));
-        let names: Vec<String> = case_changes(&[
-            difference("a | steps", 1.0, 2.0),
-            difference("b | steps", 1.0, 2.0),
-            difference("a | pressure T_v=1", 1.0, 2.0),
-        ])
-        .into_iter()
-        .map(|change| change.case)
-        .collect();
+        let all = [steps("a", 1.0), steps("b", 1.0), difference(error("a"), 1.0, 2.0)];
+        let names: Vec<String> = case_changes(&all).into_iter().map(|change| change.case).collect();
         assert_eq!(names, ["a", "b"]);
     }
 
-    /// Names of a study with two methods, two meshes, two formulations and three measures.
-    fn names() -> Vec<String> {
+    /// Keys of a study with two methods, two meshes, two formulations and three measures.
+    fn keys() -> Vec<GoldenKey> {
         let mut all = Vec::new();
         for method in ["MPM", "GIMP"] {
             for cells in [4, 8] {
                 for variant in ["(u-p, implicit drag)", "(implicit drag)"] {
-                    for measure in
-                        ["steps", "pressure points l2 terzaghi T_v=0.1", "settlement surface relative T_v=1"]
-                    {
-                        all.push(format!("{method} implicit cells={cells} {variant} | {measure}"));
-                    }
+                    let case = format!("{method} implicit cells={cells} {variant}");
+                    all.push(key(&case, None, "steps"));
+                    all.push(key(&case, 0.1, PRESSURE));
+                    all.push(key(&case, 1.0, SETTLEMENT));
                 }
             }
         }
         all
     }
 
-    /// The groups where values are changed by factors.
+    /// The groups where values are changed by factors, by their names.
     fn groups(factor: impl Fn(&str) -> f64) -> Vec<DifferenceGroup> {
-        let values: BTreeMap<String, f64> = names().into_iter().map(|name| (name, 5.0)).collect();
-        let found = values.iter().map(|(name, value)| (name.clone(), value * factor(name))).collect();
+        let values: BTreeMap<GoldenKey, f64> = keys().into_iter().map(|key| (key, 5.0)).collect();
+        let changed = |(key, value): (&GoldenKey, &f64)| (key.clone(), value * factor(&key.to_string()));
+        let found = values.iter().map(changed).collect();
         let golden = GoldenFile { values: values.clone(), ..GoldenFile::of("study", &[], "test") };
-        groups_of(&compare(&golden, &found), values.keys().map(String::as_str))
+        groups_of(&compare(&golden, &found), values.keys())
     }
 
     #[test]
@@ -473,8 +474,8 @@ mod tests {
         let group = &found[0];
         assert_eq!((group.change, group.values, group.cases), (Change::Moved, 4, 4));
         assert_eq!(group.shared_by_cases, ["u-p"], "`implicit` and `implicit drag` are of every case");
-        assert_eq!(group.shared_by_measures, ["T_v=0.1", "l2", "points", "pressure", "terzaghi"]);
-        assert!(group.worst.name.starts_with("GIMP implicit cells=8 (u-p"), "{}", group.worst.name);
+        assert_eq!(group.shared_by_measures, ["T_v=0.1", "points", "pressure"]);
+        assert!(group.worst.key.case.starts_with("GIMP implicit cells=8 (u-p"), "{}", group.worst.key);
         assert!((group.worst.relative_change().expect("both sides") - 1.0 / 3.0).abs() < 1e-12);
     }
 

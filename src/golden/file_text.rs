@@ -1,40 +1,51 @@
-//! Reads and writes the text of a golden file, whose format is described in [`crate::golden`].
+//! A golden file as text. See [`crate::golden`].
 
+use crate::golden::measure::{GoldenKey, Measure, SpreadKey, Spreading, TimeFactor};
+use crate::golden::older;
 use crate::golden::text_error::{CellError, GoldenTextError};
-use crate::golden::{GoldenFile, SCHEMA, WITHOUT_INPUTS, parts};
+use crate::golden::{CaseMark, GoldenFile, LAYOUT};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// What stands before every line of the header.
-const HEADER_MARK: char = '#';
-/// The columns that say which case and time factor a row is of.
-pub(super) const LABELS: [&str; 2] = ["case", "T_v"];
+pub(super) const HEADER_MARK: char = '#';
+/// What the first line begins with, before the layout and the study.
+const TITLE_MARK: &str = "# golden ";
+/// What stands between layout and study.
+const TITLE_GAP: &str = " · ";
+/// What the second line begins with.
+const REASON_MARK: &str = "# reason: ";
+/// The columns that say which case and time factor a row is of, with what identifies the inputs of the case.
+pub(super) const LABELS: [&str; 3] = ["case", "hash", "T_v"];
 /// What stands before the quantity of a column of spreads.
-const SPREAD_MARK: &str = "spread of ";
-/// What stands before the key of a column of inputs.
-const INPUT_MARK: &str = "input ";
+pub(super) const SPREAD_MARK: &str = "spread of ";
+/// Digits of a value behind its first one.
+const DIGITS: usize = 6;
 
-/// Numbers of a row, by whether they are spreads, and by measure.
-type TableRow<'a> = BTreeMap<(bool, &'a str), f64>;
-
-/// Where a value stands: its row by case and time factor, its column by measure.
-struct TablePlace<'a> {
-    row: (&'a str, &'a str),
-    measure: &'a str,
+/// What a column holds.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Column {
+    /// Values.
+    Values(Measure),
+    /// Spreads.
+    Spreads(Spreading),
 }
 
-impl<'a> TablePlace<'a> {
-    /// The place of a name `case | measure T_v=time`; counters have no time.
-    fn of(name: &'a str) -> Self {
-        let (case, measure) = parts(name);
-        let (measure, time_factor) = measure.rsplit_once(" T_v=").unwrap_or((measure, ""));
-        Self { row: (case, time_factor), measure }
+impl Column {
+    fn title(&self) -> String {
+        match self {
+            Self::Values(measure) => measure.to_string(),
+            Self::Spreads(of) => format!("{SPREAD_MARK}{of}"),
+        }
     }
 
-    fn name(&self) -> String {
-        let (case, time_factor) = self.row;
-        let measure = if self.measure.is_empty() { String::new() } else { format!(" | {}", self.measure) };
-        let time = if time_factor.is_empty() { String::new() } else { format!(" T_v={time_factor}") };
-        format!("{case}{measure}{time}")
+    /// The column of a title.
+    fn of(title: &str) -> Result<Self, GoldenTextError> {
+        let column = match title.strip_prefix(SPREAD_MARK) {
+            Some(of) => of.parse().map(Self::Spreads),
+            None => title.parse().map(Self::Values),
+        };
+        Ok(column?)
     }
 }
 
@@ -44,90 +55,49 @@ fn decimal(value: f64) -> String {
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
-/// A tolerance over the largest change by which a value may be rounded when it is written.
-const ROUNDING: f64 = 10.0;
-
-/// The value rounded to a power of ten that is at most `step`, so that the digits of a file say what the tolerance
-/// compares; as it is where the step is 10 or more.
-fn rounded(value: f64, step: f64) -> f64 {
-    let power = format!("{step:e}").rsplit('e').next().and_then(|power| power.parse::<i32>().ok());
-    match power.and_then(|power| usize::try_from(-power).ok()) {
-        // Without the sign of a zero.
-        Some(digits) => format!("{value:.digits$}").parse().unwrap_or(value) + 0.0,
-        None => value,
-    }
-}
-
-/// A line of the header; tolerances as 1e-12, which TOML's writer spells with eleven zeros.
-fn header_line(line: &str) -> String {
-    let tolerance =
-        line.split_once("_tolerance = ").and_then(|(kind, value)| Some((kind, value.parse().ok()?)));
-    let line =
-        tolerance.map_or(line.to_owned(), |(kind, value)| format!("{kind}_tolerance = {}", decimal(value)));
-    format!("{HEADER_MARK} {line}").trim_end().to_owned() + "\n"
+/// A value with the digits that a file keeps; steps are whole numbers and keep all. Without the sign of a zero.
+pub(super) fn kept(measure: &Measure, value: f64) -> f64 {
+    let digits = || format!("{value:.DIGITS$e}").parse().unwrap_or(value);
+    if *measure == Measure::Steps { value } else { digits() + 0.0 }
 }
 
 impl GoldenFile {
-    /// The file as text: the header, then rows by case and time factor, columns by name.
+    /// The file as text: the header, then rows by case and time factor.
     ///
     /// # Errors
-    /// When the values cannot be written as TOML and CSV.
+    /// When the values cannot be written as CSV.
     pub fn to_text(&self) -> Result<String, GoldenTextError> {
-        let values = self.values.iter().map(|(name, value)| {
-            (name, false, rounded(*value, self.tolerance(name, value.abs()) / ROUNDING))
+        let values = self.values.iter().map(|(key, value)| {
+            let column = Column::Values(key.measure.clone());
+            (&key.case, key.time, column, kept(&key.measure, *value))
         });
-        let spreads = self
-            .spread
-            .iter()
-            .map(|(group, spread)| (group, true, format!("{spread:.1e}").parse().unwrap_or(*spread)));
+        let spreads = self.spread.iter().map(|(key, spread)| {
+            let spread = format!("{spread:.1e}").parse().unwrap_or(*spread);
+            (&key.case, key.time, Column::Spreads(key.of), spread)
+        });
         let mut columns = BTreeSet::new();
-        let cases = self.inputs.own.iter().filter(|(_, own)| !own.is_empty());
-        let mut rows: BTreeMap<(&str, &str), TableRow<'_>> =
-            cases.map(|(label, _)| ((label.as_str(), ""), TableRow::new())).collect();
-        for (name, is_spread, value) in values.chain(spreads) {
-            let place = TablePlace::of(name);
-            let column = (is_spread, place.measure);
-            columns.insert(column);
-            rows.entry(place.row).or_default().insert(column, value);
+        let mut rows: BTreeMap<(&Arc<str>, Option<TimeFactor>), BTreeMap<Column, f64>> =
+            self.cases.keys().map(|case| ((case, None), BTreeMap::new())).collect();
+        for (case, time, column, value) in values.chain(spreads) {
+            columns.insert(column.clone());
+            rows.entry((case, time)).or_default().insert(column, value);
         }
-        let header = toml::to_string(self).map_err(GoldenTextError::unwritten)?;
-        let mut text: String = header.lines().map(header_line).collect();
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        let titles = columns.iter().map(|(is_spread, measure)| {
-            if *is_spread { format!("{SPREAD_MARK}{measure}") } else { (*measure).to_owned() }
-        });
-        let mut records = vec![LABELS.map(str::to_owned).into_iter().chain(titles).collect::<Vec<_>>()];
-        for ((case, time_factor), row) in &rows {
+        let reason = self.reason.split_whitespace().collect::<Vec<_>>().join(" ");
+        let text = format!("{TITLE_MARK}{LAYOUT}{TITLE_GAP}{}\n{REASON_MARK}{reason}\n", self.study);
+        let mut writer = csv::Writer::from_writer(text.into_bytes());
+        writer
+            .write_record(LABELS.map(str::to_owned).into_iter().chain(columns.iter().map(Column::title)))?;
+        for ((case, time), row) in &rows {
+            let hash = self.cases.get(*case).filter(|_| time.is_none()).map_or("", CaseMark::hash);
+            let time = time.map_or(String::new(), |TimeFactor(time)| time.to_string());
             let cells = columns.iter().map(|column| row.get(column).copied().map_or(String::new(), decimal));
-            records.push(
-                [case, time_factor].map(|label| (*label).to_owned()).into_iter().chain(cells).collect(),
-            );
+            writer.write_record([case.to_string(), hash.to_owned(), time].into_iter().chain(cells))?;
         }
-        self.add_own_inputs(&mut records);
-        for record in &records {
-            writer.write_record(record)?;
-        }
-        let table = writer.into_inner().map_err(|error| GoldenTextError::unwritten(error.into_error()))?;
-        text.push_str(&String::from_utf8(table).map_err(GoldenTextError::unwritten)?);
-        Ok(text)
+        let text = writer.into_inner().map_err(|error| GoldenTextError::unwritten(error.into_error()))?;
+        String::from_utf8(text).map_err(GoldenTextError::unwritten)
     }
 
-    /// Adds the columns of the inputs that differ between the cases, in the rows without a time.
-    fn add_own_inputs(&self, records: &mut [Vec<String>]) {
-        let keys: BTreeSet<&String> = self.inputs.own.values().flat_map(BTreeMap::keys).collect();
-        let Some((titles, rows)) = records.split_first_mut() else { return };
-        titles.extend(keys.iter().map(|key| format!("{INPUT_MARK}{key}")));
-        for row in rows {
-            let own = self.inputs.own.get(&row[0]).filter(|_| row[1].is_empty());
-            let values: Vec<String> = keys
-                .iter()
-                .map(|key| own.and_then(|own| own.get(*key)).cloned().unwrap_or_default())
-                .collect();
-            row.extend(values);
-        }
-    }
-
-    /// Reads what [`Self::to_text`] wrote.
+    /// Reads what [`Self::to_text`] wrote, or an older layout.
     ///
     /// # Errors
     /// What is wrong, and in which line.
@@ -136,122 +106,108 @@ impl GoldenFile {
         if !text.ends_with('\n') {
             return Err(GoldenTextError::CutOff { line: text.lines().count().max(1) });
         }
-        let header = text.lines().take_while(|line| line.starts_with(HEADER_MARK));
-        let header: Vec<&str> =
-            header.map(|line| line[1..].strip_prefix(' ').unwrap_or(&line[1..])).collect();
-        let header = header.join("\n");
-        let mut golden: Self = toml::from_str(&header).map_err(|source| {
-            let before = source.span().map_or("", |span| header.get(..span.start).unwrap_or_default());
-            GoldenTextError::Header { line: before.matches('\n').count() + 1, source }
-        })?;
-        if ![SCHEMA, WITHOUT_INPUTS].contains(&golden.schema) {
-            return Err(GoldenTextError::Layout(golden.schema));
+        let mut lines = text.lines();
+        let Some(title) = lines.next().and_then(|line| line.strip_prefix(TITLE_MARK)) else {
+            return older::from_text(text);
+        };
+        let (layout, study) = title.split_once(TITLE_GAP).ok_or(GoldenTextError::Title)?;
+        if layout != LAYOUT.to_string() {
+            return Err(GoldenTextError::Layout(layout.to_owned()));
         }
+        let reason = lines.next().and_then(|line| line.strip_prefix(REASON_MARK.trim_end()));
+        let reason = reason.ok_or(GoldenTextError::Reason)?.trim();
+        let mut golden = Self::of(study, &[], reason);
         let mut reader =
             csv::ReaderBuilder::new().comment(Some(HEADER_MARK as u8)).from_reader(text.as_bytes());
         let titles = reader.headers()?.clone();
         if !titles.iter().take(LABELS.len()).eq(LABELS) {
-            return Err(GoldenTextError::Columns);
+            return Err(GoldenTextError::Columns(&LABELS));
         }
+        let columns: Result<Vec<Column>, _> = titles.iter().skip(LABELS.len()).map(Column::of).collect();
+        let columns = columns?;
         for record in reader.records() {
             let record = record?;
-            golden.take_row(&titles, &record).map_err(|source| GoldenTextError::Row {
-                line: record.position().map_or(0, csv::Position::line),
-                source,
-            })?;
+            let line = record.position().map_or(0, csv::Position::line);
+            golden.take_row(&columns, &record).map_err(|source| GoldenTextError::Row { line, source })?;
         }
         Ok(golden)
     }
 
     /// Takes the values and spreads of a row of the table.
-    fn take_row(&mut self, titles: &csv::StringRecord, record: &csv::StringRecord) -> Result<(), CellError> {
-        let row = (&record[0], &record[1]);
-        if !self.inputs.is_unknown() {
-            self.inputs.own.entry(record[0].to_owned()).or_default();
+    fn take_row(&mut self, columns: &[Column], record: &csv::StringRecord) -> Result<(), CellError> {
+        let (case, hash, time): (Arc<str>, _, _) = (record[0].into(), &record[1], time_of(&record[2])?);
+        let mark = self.cases.entry(case.clone()).or_default();
+        if !hash.is_empty() {
+            *mark = CaseMark::Hash(hash.to_owned());
         }
-        let cells = titles.iter().zip(record).skip(LABELS.len());
-        for (title, cell) in cells.filter(|(_, cell)| !cell.is_empty()) {
-            if let Some(key) = title.strip_prefix(INPUT_MARK) {
-                self.inputs
-                    .own
-                    .entry(record[0].to_owned())
-                    .or_default()
-                    .insert(key.to_owned(), cell.to_owned());
-                continue;
-            }
-            let value = cell
-                .parse()
-                .map_err(|_| CellError::NoNumber { cell: cell.to_owned(), title: title.to_owned() })?;
-            let (kept, measure) = match title.strip_prefix(SPREAD_MARK) {
-                Some(measure) => (&mut self.spread, measure),
-                None => (&mut self.values, title),
-            };
-            let name = TablePlace { row, measure }.name();
-            if kept.insert(name, value).is_some() {
-                return Err(CellError::Twice { title: title.to_owned() });
-            }
+        let cells = columns.iter().zip(record.iter().skip(LABELS.len()));
+        for (column, cell) in cells.filter(|(_, cell)| !cell.is_empty()) {
+            self.take(&case, time, column, cell)?;
         }
         Ok(())
+    }
+
+    /// Takes a cell.
+    pub(super) fn take(
+        &mut self,
+        case: &Arc<str>,
+        time: Option<TimeFactor>,
+        column: &Column,
+        cell: &str,
+    ) -> Result<(), CellError> {
+        let title = || column.title();
+        let value =
+            cell.parse().map_err(|_| CellError::NoNumber { cell: cell.to_owned(), title: title() })?;
+        let known = match column.clone() {
+            Column::Values(measure) => {
+                self.values.insert(GoldenKey { case: case.clone(), time, measure }, value)
+            }
+            Column::Spreads(of) => self.spread.insert(SpreadKey { case: case.clone(), time, of }, value),
+        };
+        if known.is_some() { Err(CellError::Twice { title: title() }) } else { Ok(()) }
+    }
+}
+
+/// The time factor of a row; none where it is empty.
+pub(super) fn time_of(cell: &str) -> Result<Option<TimeFactor>, CellError> {
+    let no_number = |_| CellError::NoNumber { cell: cell.to_owned(), title: "T_v".to_owned() };
+    if cell.is_empty() {
+        Ok(None)
+    } else {
+        cell.parse().map(|time| Some(TimeFactor(time))).map_err(no_number)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::golden::inputs::CaseInputs;
+    use crate::golden::measure::key;
 
-    /// Every kind of name and number there is.
+    const CASE: &str = "MPM cells=4 (u-p, implicit drag)";
+
+    /// Every kind of key and number there is.
     fn golden() -> GoldenFile {
+        let pressure = "pressure points terzaghi";
         let values = [
-            ("MPM cells=4 (u-p, implicit drag) | steps", 46824.0),
-            ("MPM cells=4 (u-p, implicit drag) | observed critical step", -1.0),
-            ("MPM cells=4 (u-p, implicit drag) | pressure points l2 terzaghi T_v=0.05", 0.123_456_789_01),
-            ("MPM cells=4 (u-p, implicit drag) | pressure points l2 terzaghi T_v=0.0000001", 3.1e-8),
-            ("MPM cells=4 (u-p, implicit drag) | water balance T_v=0.05", 0.0),
-            ("MPM cells=8 | settlement surface relative terzaghi T_v=1", 1.797e308),
-            ("cosine-layer rough | σ'_xx x=0.3 y=0.5 T_v=0", 1e-5),
-            ("a name of its own", 3.0),
+            (key(CASE, None, "steps"), 171_843_680.0),
+            (key(CASE, None, "observed critical step"), -1.0),
+            (key(CASE, 0.05, pressure), 0.123_456_7),
+            (key(CASE, 0.000_000_1, pressure), 3.1e-8),
+            (key(CASE, 10.0, pressure), 3.1e-8),
+            (key(CASE, 0.05, "water balance"), 0.0),
+            (key("MPM cells=8", 1.0, "settlement surface terzaghi"), 1.797e308),
         ];
-        let spread = [
-            ("MPM cells=4 (u-p, implicit drag) | water balance", 3.8e-11),
-            ("MPM cells=4 (u-p, implicit drag) | pressure T_v=0.05", 1e-12),
-        ];
-        let owned = |pairs: &[(&str, f64)]| {
-            pairs.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect::<BTreeMap<_, _>>()
-        };
-        let reason = "two lines,\nand \"quoted\" # so".to_owned();
-        let inputs = CaseInputs {
-            shared: [("youngs_modulus".to_owned(), "1e6 Pa".to_owned())].into(),
-            own: [
-                ("MPM cells=4 (u-p, implicit drag)", &[("cells", "4")][..]),
-                ("MPM cells=8", &[("cells", "8"), ("points.jitter", "0.1")]),
-                ("a case without values", &[("cells", "16")]),
-                ("cosine-layer rough", &[]),
-                ("a name of its own", &[]),
-            ]
-            .map(|(case, own)| {
-                let own = own.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned()));
-                (case.to_owned(), own.collect())
-            })
-            .into(),
-        };
-        let (values, spread) = (owned(&values), owned(&spread));
-        GoldenFile { reason, inputs, spread, values, ..GoldenFile::of("s", &[], "-") }
-    }
-
-    #[test]
-    fn numbers_are_written_with_the_digits_that_a_comparison_sees() {
-        assert_eq!(rounded(0.1 + 0.2, 3e-10 / ROUNDING), 0.3);
-        assert_eq!(rounded(-1.234_567_890_123_456e-7, 1e-12 / ROUNDING), -1.234_568e-7);
-        assert_eq!(rounded(-1e-17, 1e-12 / ROUNDING).to_bits(), 0.0_f64.to_bits());
-        assert_eq!(rounded(171_843_680.0, 0.5 / ROUNDING), 171_843_680.0);
-        let name = "MPM cells=4 | pressure points l2 terzaghi T_v=0.1";
-        for size in [0.0, 1e-17, 1e-9, 0.123_456_789_123_456_78, 1.0 / 3.0, 12_345.678_901_234_567, 1e300] {
-            let values = BTreeMap::from([(name.to_owned(), size)]);
-            let file = GoldenFile { values, ..golden() };
-            let read = GoldenFile::from_text(&file.to_text().expect("written")).expect("read");
-            let moved = (read.values[name] - size).abs();
-            assert!(moved <= file.tolerance(name, size) / ROUNDING, "{size} moved by {moved}");
+        let spread = [(key(CASE, 0.05, "water balance"), 3.8e-11), (key(CASE, 0.05, pressure), 1e-12)];
+        let spread = spread.map(|(key, spread)| (key.spread().expect("a spread"), spread)).into();
+        let hash = |hash: &str| CaseMark::Hash(hash.to_owned());
+        let cases =
+            [(CASE, hash("0123")), ("MPM cells=8", CaseMark::Unknown), ("without values", hash("4567"))];
+        let cases = cases.map(|(case, mark)| (Arc::from(case), mark)).into();
+        GoldenFile {
+            cases,
+            spread,
+            values: values.into(),
+            ..GoldenFile::of("s", &[], "one, \"quoted\" # so")
         }
     }
 
@@ -262,17 +218,43 @@ mod tests {
         assert_eq!(read, golden());
         let bits = |file: &GoldenFile| file.values.values().map(|value| value.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(&read), bits(&golden()), "signs of zero too");
-        let table: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
+        let case = format!("\"{CASE}\"");
+        let lines: Vec<&str> = text.lines().collect();
         assert_eq!(
-            table[0],
-            "case,T_v,,observed critical step,pressure points l2 terzaghi,\
-             settlement surface relative terzaghi,steps,water balance,σ'_xx x=0.3 y=0.5,\
-             spread of pressure,spread of water balance,input cells,input points.jitter"
+            lines,
+            [
+                "# golden 4 · s",
+                "# reason: one, \"quoted\" # so",
+                "case,hash,T_v,steps,observed critical step,water balance,pressure points terzaghi,\
+                 settlement surface terzaghi,spread of water balance,spread of pressure",
+                &format!("{case},0123,,171843680,-1,,,,3.8e-11,"),
+                &format!("{case},,0.0000001,,,,3.1e-8,,,"),
+                &format!("{case},,0.05,,,0,0.1234567,,,1e-12"),
+                &format!("{case},,10,,,,3.1e-8,,,"),
+                "MPM cells=8,,,,,,,,,",
+                "MPM cells=8,,1,,,,,1.797e308,,",
+                "without values,4567,,,,,,,,",
+            ]
         );
-        let case = "\"MPM cells=4 (u-p, implicit drag)\"";
-        assert_eq!(table[1], format!("{case},,,-1,,,46824,,,,3.8e-11,4,"));
-        assert_eq!(table[3], format!("{case},0.05,,,0.12345678901,,,0,,1e-12,,,"));
-        assert_eq!(table.len(), 9, "a row of their inputs for cases without counters");
+        let broken = GoldenFile { reason: "two\n  lines".to_owned(), ..golden() };
+        let read = GoldenFile::from_text(&broken.to_text().expect("written")).expect("read");
+        assert_eq!(read.reason, "two lines");
+    }
+
+    #[test]
+    fn a_value_keeps_seven_digits_and_steps_all() {
+        let pressure = key("a", 0.1, "pressure points terzaghi").measure;
+        for (value, wanted) in [
+            (0.1 + 0.2, 0.3),
+            (-1.234_567_49e-7, -1.234_567e-7),
+            (12_345.678_9, 12_345.68),
+            (-1e-17, -1e-17),
+            (1e300, 1e300),
+        ] {
+            assert_eq!(kept(&pressure, value), wanted);
+        }
+        assert_eq!(kept(&pressure, -0.0).to_bits(), 0.0_f64.to_bits());
+        assert_eq!(kept(&Measure::Steps, 1_718_436_801.0), 1_718_436_801.0);
     }
 
     #[test]
@@ -285,21 +267,28 @@ mod tests {
         };
         // Editors put a byte order mark in front, and carriage returns at the ends.
         let edited = format!("\u{feff}{}", text.replace('\n', "\r\n"));
-        assert_eq!(GoldenFile::from_text(&edited).expect("read").values, golden().values);
-        let told = refused("46824", "many");
-        assert_eq!(told, format!("line {}: `many` under `steps` is not a number", line_of("46824")));
+        assert_eq!(GoldenFile::from_text(&edited).expect("read"), golden());
+        let steps = line_of("171843680");
+        assert_eq!(
+            refused("171843680", "many"),
+            format!("line {steps}: `many` under `steps` is not a number")
+        );
         let told = refused(",0.05,", ",0.0000001,");
-        let twice = "`pressure points l2 terzaghi` is given twice for this case and time factor";
+        let twice = "`pressure points terzaghi` is given twice for this case and time factor";
         assert_eq!(told, format!("line {}: {twice}", line_of(",0.05,")));
+        let told = refused(",0.05,", ",soon,");
+        assert_eq!(told, format!("line {}: `soon` under `T_v` is not a number", line_of(",0.05,")));
         let told = refused("1.797e308,", "1.797e308,,");
         assert!(told.contains(&format!("line: {}", line_of("1.797e308"))), "{told}");
-        let told = refused("absolute_tolerance = ", "absolute_tolerance = x");
-        assert!(told.starts_with(&format!("line {}: ", line_of("absolute_tolerance"))), "{told}");
-        let told = refused("# study = ", "# steady = ");
-        assert!(told.starts_with("line ") && told.contains("steady"), "{told}");
-        let told = refused("# schema = 3", "# schema = 9");
-        assert_eq!(told, "it has layout 9; this program reads layouts 2 and 3");
-        assert!(refused("case,T_v", "cases,T_v").contains("`case`, `T_v`"));
+        assert!(
+            refused("settlement surface", "settlement inside")
+                .starts_with("`settlement inside terzaghi` is no")
+        );
+        assert_eq!(refused("# golden 4", "# golden 9"), "it has layout 9; this program reads layouts 2 to 4");
+        let told = "line 1: it does not begin with `# golden 4 · STUDY`";
+        assert_eq!(refused("4 · s", "4: s"), told);
+        assert_eq!(refused("# reason", "# season"), "line 2: it is not `# reason: WHY`");
+        assert!(refused("case,hash", "case,hush").contains("`case`, `hash`, `T_v`"));
         let cut = GoldenFile::from_text(&text[..text.len() - 2]).expect_err("refused").to_string();
         assert_eq!(cut, format!("line {}: the file ends within it", text.lines().count()));
     }

@@ -5,87 +5,91 @@
 //!
 //! # The file
 //!
-//! `golden/STUDY.csv` has a header, whose lines begin with `#` and which is TOML behind that, and a table:
+//! `golden/STUDY.csv` has two lines that begin with `#` and a table; what made the values is said by the commit:
 //!
 //! ```text
-//! # schema = 3
-//! # study = "terzaghi-mesh"
-//! # reason = "why these values were taken"
-//! # relative_tolerance = 1e-9
-//! # …
-//! # [provenance]
-//! # …
-//! # [inputs]
-//! # youngs_modulus = "1e6 Pa"
-//! # …
-//! case,T_v,point updates,pressure points l2 terzaghi,…,steps,…,spread of pressure,…,input cells
-//! MPM implicit cells=4 points=2,,800,,…,100,…,,…,4
-//! MPM implicit cells=4 points=2,0.1,,0.0213,…,,…,2.1e-11,…,
+//! # golden 4 · terzaghi-mesh
+//! # reason: why these values were taken
+//! case,hash,T_v,steps,…,pressure points terzaghi,…,spread of pressure
+//! MPM implicit cells=4 points=2,1f0c5a7e90b3d842,,100,…,,…,
+//! MPM implicit cells=4 points=2,,0.1,,…,2.130512e-2,…,2.1e-11
 //! ```
 //!
-//! The header has the inputs that all cases share, the columns `input KEY` those that differ. Layout 2, which knows no
-//! inputs, is read too.
-//!
-//! A row per case and time factor, by label and then by time; counters and inputs stand in a row without a time. Columns
-//! are in the order of their names; a cell is empty where nothing was measured. A number has the digits that its
-//! tolerance compares and one more. `spread of X` is the largest change by round-off of all values of the row whose
-//! first word is `X`, where it is large enough to widen a tolerance. `git diff --word-diff-regex='[^,]+' golden/` shows which numbers changed.
+//! A row per case and time factor, by label and then by time; the hash of its inputs and what a case has once stand in the
+//! row without a time. An error is kept in the norm that its quantity is reported in first, `l2` or `relative`, with seven
+//! digits; a cell is empty where nothing was measured. `spread of X` is the largest change by round-off of the errors of X at
+//! that time, where it is large enough to widen a tolerance. Layouts 2 and 3 are read too (`older`).
+//! `git diff --word-diff-regex='[^,]+' golden/` shows which numbers changed.
 
 pub mod compare;
 mod file_text;
 pub mod inputs;
-mod output_times;
+pub mod measure;
+mod older;
 pub mod text_error;
 pub mod tolerance;
 
+use crate::case::Case;
 use crate::golden::compare::compare;
-use crate::golden::inputs::{CaseInputs, Pairing};
-use crate::golden::tolerance::{ABSOLUTE_FLOOR, BASIS, RELATIVE_FLOOR, spread_group};
+use crate::golden::measure::{GoldenKey, Measure, SpreadKey, TimeFactor, WaterBalance};
+use crate::record::Record;
 use crate::record::whole_file::{StoreError, write_whole};
-use crate::record::{ErrorRow, Provenance, Record};
 use include_dir::{Dir, include_dir};
-use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Version of the file's layout.
-const SCHEMA: u32 = 3;
-/// Older version that is read too: it has no inputs.
-const WITHOUT_INPUTS: u32 = 2;
+const LAYOUT: u32 = 4;
+
+/// Inputs of a case by their keys in a study file (`youngs_modulus`, `points.jitter`), as a study may give them.
+type Inputs = BTreeMap<String, String>;
+
 /// Golden values of a study.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct GoldenFile {
-    /// Version of this layout.
-    pub schema: u32,
     /// Study.
     pub study: String,
     /// Why these values were taken.
     pub reason: String,
-    /// Change relative to the larger of the values that is always allowed; 1e-9 at least, whatever the file has.
-    pub relative_tolerance: f64,
-    /// Absolute change that is always allowed; 1e-12 at least, whatever the file has.
-    pub absolute_tolerance: f64,
-    /// Where the tolerances come from.
-    pub basis: String,
-    /// Wall time of all cases together when the values were taken, s: it warns and never fails.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub seconds: Option<f64>,
-    /// What made the values.
-    pub provenance: Provenance,
-    /// Inputs of the cases; empty where they are not known.
-    #[serde(default, skip_serializing_if = "CaseInputs::is_unknown")]
-    pub inputs: CaseInputs,
-    /// Largest change by round-off that was measured, by case, quantity and time: a tolerance is ten
-    /// times as wide.
-    #[serde(skip)]
-    pub spread: BTreeMap<String, f64>,
-    /// Signed errors and work counters by case and measure.
-    #[serde(skip)]
-    pub values: BTreeMap<String, f64>,
+    /// The cases by their labels, with what tells their inputs.
+    pub cases: BTreeMap<Arc<str>, CaseMark>,
+    /// Signed errors, balances, steps and critical steps.
+    pub values: BTreeMap<GoldenKey, f64>,
+    /// Largest change by round-off that was measured: a tolerance is ten times as wide.
+    pub spread: BTreeMap<SpreadKey, f64>,
     /// Change of each value, and of the part of 1 that it is, that the study lets pass.
-    #[serde(skip)]
     pub wider: f64,
+    /// Whether it was read of an older layout.
+    pub is_older: bool,
+}
+
+/// What tells the inputs of a case.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum CaseMark {
+    /// Nothing.
+    #[default]
+    Unknown,
+    /// The hash of the case.
+    Hash(String),
+    /// The inputs themselves, in layout 3.
+    Inputs(BTreeMap<String, String>),
+}
+
+impl CaseMark {
+    /// The hash, where it is known.
+    fn hash(&self) -> &str {
+        if let Self::Hash(hash) = self { hash } else { "" }
+    }
+
+    /// Whether a case has the inputs; none where nothing is known of them.
+    fn is_of(&self, case: &Case) -> Option<bool> {
+        match self {
+            Self::Unknown => None,
+            Self::Hash(hash) => Some(*hash == case.hash()),
+            Self::Inputs(inputs) => Some(*inputs == older::inputs_of(case)),
+        }
+    }
 }
 
 /// An error behind another one.
@@ -139,31 +143,93 @@ impl GoldenError {
 impl GoldenFile {
     /// The values of records as golden, for a reason.
     pub fn of(study: &str, records: &[Record], reason: &str) -> Self {
+        let mark = |record: &Record| (record.case.label().into(), CaseMark::Hash(record.case.hash()));
         Self {
-            schema: SCHEMA,
             study: study.to_owned(),
             reason: reason.to_owned(),
-            relative_tolerance: RELATIVE_FLOOR,
-            absolute_tolerance: ABSOLUTE_FLOOR,
-            basis: BASIS.to_owned(),
-            provenance: Provenance::of_this_program(),
-            seconds: Some(seconds_of(records)),
-            inputs: CaseInputs::of(records.iter().map(|record| &record.case)),
-            spread: BTreeMap::new(),
+            cases: records.iter().map(mark).collect(),
             values: values_of(records),
+            spread: BTreeMap::new(),
             wider: 0.0,
+            is_older: false,
         }
     }
 
-    /// The file beside cases with other inputs: the values of a case that has another label now are under that one. And
-    /// how the cases belong together.
+    /// The file beside the cases of now: a case that has another label now stands under that one, where its inputs are the
+    /// same. And the labels of the cases with other inputs.
     #[must_use]
-    pub fn beside(mut self, inputs: &CaseInputs) -> (Self, Pairing) {
-        let pairing = Pairing::of(&self.inputs, inputs);
-        self.values = pairing.rename(self.values);
-        self.spread = pairing.rename(self.spread);
-        self.inputs.own = pairing.rename(self.inputs.own);
-        (self, pairing)
+    pub fn beside(mut self, cases: &[&Case]) -> (Self, Vec<String>) {
+        let present: BTreeMap<Arc<str>, &Case> =
+            cases.iter().map(|case| (case.label().into(), *case)).collect();
+        let mut new: Vec<(&Arc<str>, &&Case)> =
+            present.iter().filter(|(label, _)| !self.cases.contains_key(*label)).collect();
+        let mut renamed: BTreeMap<Arc<str>, Arc<str>> = BTreeMap::new();
+        for (label, mark) in self.cases.iter().filter(|(label, _)| !present.contains_key(*label)) {
+            if let Some(place) = new.iter().position(|(_, case)| mark.is_of(case) == Some(true)) {
+                renamed.insert(label.clone(), new.remove(place).0.clone());
+            }
+        }
+        let is_other = |(label, mark): &(&Arc<str>, &CaseMark)| {
+            present.get(*label).is_some_and(|case| mark.is_of(case) == Some(false))
+        };
+        let others = self.cases.iter().filter(is_other).map(|(label, _)| label.to_string()).collect();
+        self.rename_cases(|label| renamed.get(label).cloned());
+        (self, others)
+    }
+
+    /// Puts what is kept of a case under another label, where it has one.
+    fn rename_cases(&mut self, other: impl Fn(&Arc<str>) -> Option<Arc<str>>) {
+        let label = |case: Arc<str>| other(&case).unwrap_or(case);
+        let cases = std::mem::take(&mut self.cases).into_iter();
+        self.cases = cases.map(|(case, mark)| (label(case), mark)).collect();
+        let values = std::mem::take(&mut self.values).into_iter();
+        self.values =
+            values.map(|(key, value)| (GoldenKey { case: label(key.case), ..key }, value)).collect();
+        let spread = std::mem::take(&mut self.spread).into_iter();
+        self.spread =
+            spread.map(|(key, value)| (SpreadKey { case: label(key.case), ..key }, value)).collect();
+    }
+
+    /// The file of a study that names times: the outputs of a case whose inputs are others stand under the time factors of
+    /// now, one by one, for they are at the same times.
+    #[must_use]
+    pub fn at_the_times_of(mut self, cases: &[&Case], others: &[String]) -> Self {
+        for case in cases {
+            let label: Arc<str> = case.label().into();
+            let is_own = |key: &&GoldenKey| key.case == label;
+            let before: BTreeSet<TimeFactor> =
+                self.values.keys().filter(is_own).filter_map(|key| key.time).collect();
+            let now: BTreeSet<TimeFactor> = case.time_factors.iter().copied().map(TimeFactor).collect();
+            if !others.iter().any(|other| **other == *label) || before.len() != now.len() {
+                continue;
+            }
+            let moved: BTreeMap<TimeFactor, TimeFactor> = before.into_iter().zip(now).collect();
+            let at = |time: Option<TimeFactor>| time.map(|time| moved.get(&time).copied().unwrap_or(time));
+            let values = std::mem::take(&mut self.values).into_iter().map(|(key, value)| {
+                let time = if key.case == label { at(key.time) } else { key.time };
+                (GoldenKey { time, ..key }, value)
+            });
+            self.values = values.collect();
+            let spread = std::mem::take(&mut self.spread).into_iter().map(|(key, value)| {
+                let time = if key.case == label { at(key.time) } else { key.time };
+                (SpreadKey { time, ..key }, value)
+            });
+            self.spread = spread.collect();
+        }
+        self
+    }
+
+    /// A file of an older layout in that of today, for the cases of its study: no value moves, and a case whose inputs are
+    /// not those of then has no hash.
+    #[must_use]
+    pub fn in_todays_layout(mut self, cases: &[&Case]) -> Self {
+        for (label, mark) in &mut self.cases {
+            let case = cases.iter().find(|case| case.label() == **label);
+            let same = case.filter(|case| mark.is_of(case) == Some(true));
+            *mark = same.map_or(CaseMark::Unknown, |case| CaseMark::Hash(case.hash()));
+        }
+        self.is_older = false;
+        self.widened_by(BTreeMap::new())
     }
 
     /// The file with the values and spreads of an older one wherever these agree: what is written again differs where
@@ -171,13 +237,17 @@ impl GoldenFile {
     #[must_use]
     pub fn keeping(mut self, older: &Self) -> Self {
         let differences = compare(older, &self.values);
-        // Counters share a spread with nothing: each is a group of its own.
-        let group_of = |name: &str| spread_group(name).unwrap_or_else(|| name.to_owned());
-        let moved: BTreeSet<String> = differences.iter().map(|one| group_of(&one.name)).collect();
-        for (name, value) in &mut self.values {
-            let group = group_of(name);
-            let Some(before) = older.values.get(name).filter(|_| !moved.contains(&group)) else { continue };
+        let moved: BTreeSet<&GoldenKey> = differences.iter().map(|one| &one.key).collect();
+        let moved_groups: BTreeSet<SpreadKey> = moved.iter().filter_map(|key| key.spread()).collect();
+        let has_moved = |key: &GoldenKey| match key.spread() {
+            Some(group) => moved_groups.contains(&group),
+            // Steps share a spread with nothing.
+            None => moved.contains(key),
+        };
+        for (key, value) in &mut self.values {
+            let Some(before) = older.values.get(key).filter(|_| !has_moved(key)) else { continue };
             *value = *before;
+            let Some(group) = key.spread() else { continue };
             match older.spread.get(&group) {
                 Some(spread) => self.spread.insert(group, *spread),
                 None => self.spread.remove(&group),
@@ -276,68 +346,32 @@ fn remedy(text: &str, path: &Path, error: &text_error::GoldenTextError) -> Strin
 /// The golden files inside the program.
 static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/golden");
 
-/// Wall time of the first run of every record together, s.
-pub fn seconds_of(records: &[Record]) -> f64 {
-    // A sum of nothing is −0: of results that were there already none took any time.
-    records.iter().filter_map(|record| record.wall.first()).map(|sample| sample.seconds).sum::<f64>() + 0.0
-}
-
-/// Name of a measured error within its case.
-pub fn measure_name(row: &ErrorRow) -> String {
-    format!(
-        "{} {} {} {} T_v={}",
-        row.quantity.name(),
-        row.sample.name(),
-        row.norm,
-        row.reference,
-        row.time_factor
-    )
-}
-
-/// Case and measure of a golden value's name.
-pub(crate) fn parts(name: &str) -> (&str, &str) {
-    name.rsplit_once(" | ").unwrap_or((name, ""))
-}
-
-/// Whether a measure counts work: a whole number, exact, and better where it is less.
-pub(crate) fn is_counter(measure: &str) -> bool {
-    matches!(measure, "steps" | "point updates")
-}
-
-/// Whether a measure is an error at a time, and no balance.
-pub(crate) fn is_error(measure: &str) -> bool {
-    measure.contains(" T_v=") && !measure.starts_with("water")
-}
-
-/// Every measured error and work counter of records, by name.
-pub fn values_of(records: &[Record]) -> BTreeMap<String, f64> {
+/// Every value of records that is kept.
+pub fn values_of(records: &[Record]) -> BTreeMap<GoldenKey, f64> {
     let mut values = BTreeMap::new();
     for record in records {
-        let label = record.case.label();
+        let case: Arc<str> = record.case.label().into();
+        let mut keep = |time: Option<f64>, measure: Measure, value: f64| {
+            values.insert(GoldenKey { case: case.clone(), time: time.map(TimeFactor), measure }, value);
+        };
         if record.case.counts_work() {
-            values.insert(format!("{label} | steps"), record.counters.steps as f64);
-            values.insert(format!("{label} | point updates"), record.counters.point_updates as f64);
+            keep(None, Measure::Steps, record.counters.steps as f64);
         }
         if let Some(found) = &record.stability {
-            values.insert(format!("{label} | predicted critical step"), found.predicted);
-            let observed = found.observed.unwrap_or(-1.0);
-            values.insert(format!("{label} | observed critical step"), observed);
+            keep(None, Measure::CriticalStep { is_observed: false }, found.predicted);
+            keep(None, Measure::CriticalStep { is_observed: true }, found.observed.unwrap_or(-1.0));
         }
         for row in &record.errors {
-            values.insert(format!("{label} | {}", measure_name(row)), row.value);
+            if let Some(measure) = Measure::of_error(row) {
+                keep(Some(row.time_factor), measure, row.value);
+            }
         }
         for balance in &record.balance {
-            values.insert(
-                format!("{label} | water balance T_v={}", balance.time_factor),
-                balance.water_imbalance,
-            );
+            let at = Some(balance.time_factor);
+            keep(at, Measure::Water(WaterBalance::Body), balance.water_imbalance);
             if let Some(layers) = &balance.layers {
-                let at = balance.time_factor;
-                values.insert(format!("{label} | water balance of pores T_v={at}"), layers.pore_water);
-                values.insert(
-                    format!("{label} | water balance of what left T_v={at}"),
-                    layers.water_left_error,
-                );
+                keep(at, Measure::Water(WaterBalance::Pores), layers.pore_water);
+                keep(at, Measure::Water(WaterBalance::WhatLeft), layers.water_left_error);
             }
         }
     }
@@ -347,6 +381,8 @@ pub fn values_of(records: &[Record]) -> BTreeMap<String, f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::Norm;
+    use crate::golden::measure::key;
 
     #[test]
     fn the_program_has_the_golden_values_of_the_repository_to_the_bit() {
@@ -373,61 +409,111 @@ mod tests {
         assert_eq!(told, wanted);
     }
 
-    #[test]
-    fn values_spreads_and_inputs_of_a_renamed_case_are_all_under_its_label_of_now() {
-        // Labels tell the number of cells, which is that of now in a label and that of then in the inputs.
-        let inputs = |now: [u32; 3], then: [u32; 3]| {
-            let case = |place: usize| {
-                let inputs = [("cells".to_owned(), then[place].to_string())].into();
-                (format!("cells={}", now[place]), inputs)
-            };
-            let shared = [("scene".to_owned(), "terzaghi".to_owned())].into();
-            CaseInputs { shared, own: [case(0), case(1), case(2)].into() }
-        };
-        let file = |now: [u32; 3], then: [u32; 3]| {
-            let of = |measure: &str| {
-                let named = now.iter().zip([1.0, 2.0, 3.0]);
-                named.map(|(cells, value)| (format!("cells={cells} | {measure}"), value)).collect()
-            };
-            let (values, spread) = (of("pressure points l2 terzaghi T_v=0.1"), of("pressure T_v=0.1"));
-            GoldenFile { values, spread, inputs: inputs(now, then), ..GoldenFile::of("s", &[], "test") }
-        };
-        let then = [4, 8, 16];
-        for (now, changes) in [([5, 8, 16], 1), ([4, 9, 16], 1), ([4, 8, 17], 1), (then, 0)] {
-            let (found, pairing) = file(then, then).beside(&inputs(now, now));
-            assert_eq!((found, pairing.changes.len()), (file(now, then), changes));
+    /// Cases of a study in times, with a soil.
+    fn cases(soil: &str, methods: &str) -> Vec<Case> {
+        let text = format!(
+            "title = 't'\nscene = 'terzaghi'\noutput.times = ['10 s', '20 s']\n{soil}\n[[sweep]]\nmethod = [{methods}]\n\
+             integrator = ['implicit']\ncells = [2, 3]\n"
+        );
+        crate::campaign::runner::study_of("t", &text)
+            .planned
+            .into_iter()
+            .map(|planned| planned.case)
+            .collect()
+    }
+
+    /// A file of cases, with values and spreads that are their numbers.
+    fn file_of(cases: &[&Case], label: impl Fn(&Case) -> String) -> GoldenFile {
+        let mut file = GoldenFile::of("t", &[], "test");
+        for (case, number) in cases.iter().zip([1.0, 2.0, 3.0, 4.0]) {
+            let label = label(case);
+            file.cases.insert(label.as_str().into(), CaseMark::Hash(case.hash()));
+            for time in case.time_factors.iter() {
+                let key = key(&label, *time, "pressure points terzaghi");
+                file.spread.insert(key.spread().expect("a spread"), number);
+                file.values.insert(key, number);
+            }
         }
+        file
+    }
+
+    #[test]
+    fn a_renamed_case_of_the_same_inputs_is_under_its_label_of_now_and_other_inputs_are_named() {
+        let cases = cases("", "'MPM'");
+        let all: Vec<&Case> = cases.iter().collect();
+        let (two, three) = (cases[0].label(), cases[1].label());
+        let now = file_of(&all, Case::label);
+        // The first case had another name.
+        let then = file_of(&all, |case| case.label().replace("cells=2", "coarse"));
+        assert_eq!(then.beside(&all), (now.clone(), vec![]));
+        // One that is gone has no partner, and each at most one.
+        let (found, _) = file_of(&all, |case| case.label().replace("cells", "meshes")).beside(&all[..1]);
+        let labels: Vec<String> = found.cases.keys().map(ToString::to_string).collect();
+        assert_eq!(labels, [two.clone(), three.replace("cells", "meshes")]);
+        // The label of one case stands for another now.
+        let mut other = cases[0].clone();
+        other.material.porosity = 0.4;
+        let (found, others) = now.clone().beside(&[&other, all[1]]);
+        assert_eq!((found, others), (now.clone(), vec![two.clone()]));
+        let mut unknown = now.clone();
+        unknown.cases.insert(two.as_str().into(), CaseMark::Unknown);
+        assert_eq!(unknown.clone().beside(&[&other, all[1]]), (unknown, vec![]));
+        // Layout 3 tells the inputs themselves.
+        let mut of_inputs = now.clone();
+        of_inputs.cases.insert(two.as_str().into(), CaseMark::Inputs(older::inputs_of(all[0])));
+        assert_eq!(of_inputs.clone().beside(&[&other, all[1]]).1, [two]);
+        assert_eq!(of_inputs.clone().in_todays_layout(&all).cases, now.cases);
+        let of_other = of_inputs.in_todays_layout(&[&other, all[1]]).cases;
+        assert_eq!(of_other.values().filter(|mark| **mark == CaseMark::Unknown).count(), 1);
+    }
+
+    #[test]
+    fn the_outputs_of_a_study_in_times_are_those_of_other_time_factors_where_its_soil_is_another() {
+        let then = cases("", "'MPM'");
+        let now = cases("material.hydraulic_conductivity = 2e-4", "'MPM'");
+        let [then, now]: [Vec<&Case>; 2] = [then.iter().collect(), now.iter().collect()];
+        assert_ne!(then[0].time_factors, now[0].time_factors);
+        let (file, others) = file_of(&then, Case::label).beside(&now);
+        assert_eq!(others.len(), 2);
+        let wanted = GoldenFile { cases: file.cases.clone(), ..file_of(&now, Case::label) };
+        assert_eq!(file.clone().at_the_times_of(&now, &others), wanted);
+        assert_eq!(file.clone().at_the_times_of(&now, &[]), file, "of the same inputs");
+        let fewer = Case { time_factors: vec![0.1].into(), ..now[0].clone() };
+        assert_eq!(file.clone().at_the_times_of(&[&fewer], &others), file, "another number of outputs");
     }
 
     #[test]
     fn what_agrees_stays_as_it_was_written_and_what_moved_is_taken_with_its_spread() {
-        let name =
-            |cells: u32, norm: &str| format!("MPM cells={cells} | pressure points {norm} terzaghi T_v=0.1");
+        let value = |case: &str, sample: &str| key(case, 0.1, &format!("pressure {sample} terzaghi"));
         let file = |values: [f64; 3], spread: [f64; 2]| GoldenFile {
-            values: [(name(4, "l1"), values[0]), (name(4, "l2"), values[1]), (name(8, "l2"), values[2])]
-                .into(),
-            spread: [4, 8]
-                .map(|cells| format!("MPM cells={cells} | pressure T_v=0.1"))
+            values: [
+                (value("a", "points"), values[0]),
+                (value("a", "nodes"), values[1]),
+                (value("b", "nodes"), values[2]),
+            ]
+            .into(),
+            spread: ["a", "b"]
+                .map(|case| value(case, "points").spread().expect("a spread"))
                 .into_iter()
                 .zip(spread)
                 .collect(),
             ..GoldenFile::of("s", &[], "test")
         };
-        let older = file([0.1, 0.2, 0.3], [1e-12, 2e-12]);
+        let older = file([0.1, 0.2, 0.3], [1e-8, 2e-8]);
         let (round_off, moved) = (1e-11, 1e-3);
-        let written = file([0.1 + round_off, 0.2, 0.3 + moved], [3e-12, 4e-12]).keeping(&older);
-        assert_eq!(written, file([0.1, 0.2, 0.3 + moved], [1e-12, 4e-12]));
-        // A counter has no spread to share: it is taken when it moved.
+        let written = file([0.1 + round_off, 0.2, 0.3 + moved], [3e-8, 4e-8]).keeping(&older);
+        assert_eq!(written, file([0.1, 0.2, 0.3 + moved], [1e-8, 4e-8]));
+        // Steps have no spread to share: they are taken when they moved.
         let counted = |steps: f64| GoldenFile {
-            values: [("MPM cells=4 | steps".to_owned(), steps)].into(),
+            values: [(key("a", None, "steps"), steps)].into(),
             ..GoldenFile::of("s", &[], "test")
         };
         assert_eq!(counted(101.0).keeping(&counted(100.0)), counted(101.0));
     }
 
     #[test]
-    fn values_are_of_the_whole_record_and_its_seconds_those_of_its_first_run() {
-        use crate::record::{LayerBalance, WallSample};
+    fn values_are_of_the_whole_record_in_the_norm_that_is_reported_first() {
+        use crate::record::LayerBalance;
         let mut records = crate::campaign::runner::records_of(
             "title = 't'\nscene = 'terzaghi'\noutput = { time_factors = [0.1, 0.3], references = ['terzaghi'] }\n[[sweep]]\n\
              method = ['MPM']\nintegrator = ['implicit']\ncells = [2, 3]\n",
@@ -441,21 +527,21 @@ mod tests {
         };
         records[1].balance[1].layers = Some(layers);
         let values = values_of(&records);
-        let of = |record: &Record, measure: &str| {
-            values.get(&format!("{} | {measure}", record.case.label())).copied()
-        };
-        assert_eq!(of(&records[1], "water balance of pores T_v=0.3"), Some(3.0));
-        assert_eq!(of(&records[1], "water balance of what left T_v=0.3"), Some(7.0));
-        let count = records.iter().map(|record| 2 + record.errors.len() + 2).sum::<usize>();
-        assert_eq!(values.len(), count + 2, "and nothing else");
-        let wall = |seconds: &[f64]| -> Vec<WallSample> {
-            seconds.iter().map(|seconds| WallSample { seconds: *seconds, ..WallSample::default() }).collect()
-        };
-        (records[0].wall, records[1].wall) = (wall(&[3.0, 1.0]), wall(&[4.0, 9.0, 1.0]));
-        assert_eq!(seconds_of(&records), 7.0);
-        records[0].wall.clear();
-        assert_eq!(seconds_of(&records), 4.0);
-        assert_eq!(seconds_of(&[]).to_bits(), 0.0_f64.to_bits());
+        let of =
+            |time: f64, measure: &str| values.get(&key(&records[1].case.label(), time, measure)).copied();
+        assert_eq!(of(0.3, "water balance of pores"), Some(3.0));
+        assert_eq!(of(0.3, "water balance of what left"), Some(7.0));
+        for (row, title) in
+            [(Norm::L2, "pressure points terzaghi"), (Norm::Relative, "settlement surface terzaghi")].map(
+                |(norm, title)| {
+                    (records[1].errors.iter().find(|row| row.norm == norm).expect("a row"), title)
+                },
+            )
+        {
+            assert_eq!(of(row.time_factor, title), Some(row.value));
+        }
+        // Steps; at each of two times three fields at three samples, a settlement and a balance; what the second set adds.
+        assert_eq!(values.len(), 2 * (1 + 2 * (9 + 1 + 1)) + 2);
     }
 
     #[test]
@@ -475,7 +561,7 @@ mod tests {
             });
             let label = records[0].case.label();
             let values = values_of(&records);
-            let step = |which: &str| values[&format!("{label} | {which} critical step")];
+            let step = |which: &str| values[&key(&label, None, &format!("{which} critical step"))];
             assert_eq!((step("predicted"), step("observed")), (2.0, stored));
         }
     }

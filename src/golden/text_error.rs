@@ -1,7 +1,7 @@
 //! Why a text is not a golden file.
 
-use crate::golden::file_text::LABELS;
-use crate::golden::{SCHEMA, WITHOUT_INPUTS};
+use crate::golden::LAYOUT;
+use crate::golden::measure::UnknownMeasure;
 
 /// Why a text is not a golden file, or a golden file is not text.
 #[derive(Debug, thiserror::Error)]
@@ -13,7 +13,13 @@ pub enum GoldenTextError {
         /// Counted from 1.
         line: usize,
     },
-    /// The header is wrong.
+    /// The first line is wrong.
+    #[error("line 1: it does not begin with `# golden {LAYOUT} · STUDY`")]
+    Title,
+    /// The second line is wrong.
+    #[error("line 2: it is not `# reason: WHY`")]
+    Reason,
+    /// The header of an older layout is wrong.
     #[error("line {line}: {}", source.message())]
     Header {
         /// Counted from 1.
@@ -22,11 +28,14 @@ pub enum GoldenTextError {
         source: toml::de::Error,
     },
     /// The layout is another one.
-    #[error("it has layout {0}; this program reads layouts {WITHOUT_INPUTS} and {SCHEMA}")]
-    Layout(u32),
+    #[error("it has layout {0}; this program reads layouts 2 to {LAYOUT}")]
+    Layout(String),
     /// The table has other columns.
-    #[error("its table does not begin with the columns `{}`", LABELS.join("`, `"))]
-    Columns,
+    #[error("its table does not begin with the columns `{}`", .0.join("`, `"))]
+    Columns(&'static [&'static str]),
+    /// A column is of nothing that is kept.
+    #[error(transparent)]
+    Column(#[from] UnknownMeasure),
     /// The table is none.
     #[error(transparent)]
     Table(#[from] csv::Error),

@@ -1,15 +1,17 @@
 //! Two states beside each other: inputs that differ first, then accuracy and cost, apart; and the orders and classes of
-//! errors under refinement, found from values by their names.
+//! errors under refinement.
 
+use crate::case::{Case, Quantity};
 use crate::golden::compare::{
     CaseChange, Change, Difference, DifferenceGroup, case_changes, cases_apart, compare, groups_of,
 };
 use crate::golden::inputs::InputChange;
-use crate::golden::{is_counter, is_error, parts};
+use crate::golden::measure::{GoldenKey, Measure};
 use crate::history::state::{State, StudyState};
 use crate::measure::statistics::spread;
 use oedometer_convergence::{Context, ErrorSeries, SeriesLevel, classify};
 use oedometer_soil::wording::count_of;
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Where something went from the first state to the second.
@@ -61,7 +63,7 @@ pub struct StudyComparison {
     pub cases_apart: [Vec<String>; 2],
     /// Errors of what both states have; values that only one state has are in `unpaired`.
     pub accuracy: Trend,
-    /// Work counters.
+    /// Steps.
     pub cost: Trend,
     /// Values that both states have.
     pub values: usize,
@@ -120,9 +122,9 @@ impl Seconds {
 pub struct Arrow {
     /// Label of the case.
     pub case: String,
-    /// Point updates and error before.
+    /// Steps and error before.
     pub before: (f64, f64),
-    /// Point updates and error after.
+    /// Steps and error after.
     pub after: (f64, f64),
 }
 
@@ -144,31 +146,33 @@ impl StudyComparison {
         let seconds = Seconds::of_both(before, after);
         let cases_apart = cases_apart(before.golden.values.keys(), found.keys());
         let made_by = [before, after].map(|state| state.made_by.clone());
-        let (before, pairing) = before.golden.clone().beside(&after.golden.inputs);
+        let now: Vec<&Case> = after.cases.values().collect();
+        let inputs = InputChange::between(&before.cases, &after.cases);
+        let (before, _) = before.golden.clone().beside(&now);
         let differences = compare(&before, found);
         let (counters, errors): (Vec<&Difference>, Vec<&Difference>) = differences
             .iter()
             .filter(|difference| difference.golden.is_some() && difference.found.is_some())
-            .partition(|difference| is_counter(parts(&difference.name).1));
+            .partition(|difference| difference.key.measure == Measure::Steps);
         let grew = |difference: &&Difference| difference.found > difference.golden;
         let cost = Trend::of(counters.iter().any(|difference| !grew(difference)), counters.iter().any(grew));
         let is_better =
             |difference: &&Difference| matches!(difference.change, Change::Stale | Change::Smaller);
         let accuracy =
             Trend::of(errors.iter().any(is_better), errors.iter().any(|difference| !is_better(difference)));
-        let names = before.values.keys().chain(found.keys()).map(String::as_str);
+        let keys: BTreeSet<&GoldenKey> = before.values.keys().chain(found.keys()).collect();
         Self {
             study: study.to_owned(),
             cases_apart,
             accuracy,
             cost,
-            values: before.values.keys().filter(|name| found.contains_key(*name)).count(),
+            values: before.values.keys().filter(|key| found.contains_key(*key)).count(),
             unpaired: differences
                 .iter()
                 .filter(|difference| difference.golden.is_none() || difference.found.is_none())
                 .count(),
-            inputs: pairing.changes,
-            groups: groups_of(&differences, names.collect::<BTreeSet<_>>()),
+            inputs,
+            groups: groups_of(&differences, keys),
             changes: case_changes(&differences),
             orders: order_changes(&before.values, found, &differences),
             seconds,
@@ -210,29 +214,23 @@ pub(crate) fn compare_states(
     (found, notes)
 }
 
-/// Every case that has point updates and an error in both states: the error of the pressure, or of the first quantity
-/// there is, at its last time.
-fn arrows(before: &BTreeMap<String, f64>, after: &BTreeMap<String, f64>) -> Vec<Arrow> {
-    let mut measures: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-    for name in before.keys().filter(|name| after.contains_key(*name)) {
-        let (case, measure) = parts(name);
-        measures.entry(case).or_default().push(measure);
-    }
-    let time = |measure: &str| measure.rsplit_once(" T_v=").and_then(|(_, time)| time.parse::<f64>().ok());
-    let arrow = |(case, measures): (&str, Vec<&str>)| {
-        let work = measures.iter().find(|measure| **measure == "point updates")?;
-        let errors = measures.iter().filter(|measure| is_error(measure));
-        let error = errors.max_by(|a, b| {
-            let rank = |measure: &str| (measure.starts_with("pressure"), time(measure).unwrap_or(0.0));
-            rank(a).partial_cmp(&rank(b)).unwrap_or(std::cmp::Ordering::Equal)
-        })?;
-        let point = |values: &BTreeMap<String, f64>| {
-            let value = |measure: &str| values.get(&format!("{case} | {measure}")).copied();
-            Some((value(work)?, value(error)?.abs()))
+/// Every case that has steps and an error in both states: the error of the pressure, or of the last quantity there is, at
+/// its last time.
+fn arrows(before: &BTreeMap<GoldenKey, f64>, after: &BTreeMap<GoldenKey, f64>) -> Vec<Arrow> {
+    let in_both: Vec<&GoldenKey> = before.keys().filter(|key| after.contains_key(*key)).collect();
+    let arrow = |of_case: &[&GoldenKey]| {
+        let steps = of_case.iter().find(|key| key.measure == Measure::Steps)?;
+        let rank = |key: &&&GoldenKey| match &key.measure {
+            Measure::Error { quantity, sample, .. } => {
+                Some((*quantity == Quantity::Pressure, key.time, Reverse(*sample)))
+            }
+            _ => None,
         };
-        Some(Arrow { case: case.to_owned(), before: point(before)?, after: point(after)? })
+        let error = of_case.iter().filter(|key| rank(key).is_some()).max_by_key(rank)?;
+        let point = |values: &BTreeMap<GoldenKey, f64>| (values[*steps], values[*error].abs());
+        Some(Arrow { case: steps.case.to_string(), before: point(before), after: point(after) })
     };
-    measures.into_iter().filter_map(arrow).collect()
+    in_both.chunk_by(|a, b| a.case == b.case).filter_map(arrow).collect()
 }
 
 /// Errors up to this are round-off.
@@ -258,7 +256,7 @@ pub struct Behaviour {
 /// A series whose order or class is another.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct OrderChange {
-    /// What the runs share, with the axis, `GIMP implicit cells=… points=2 | pressure points l2 terzaghi T_v=0.1`.
+    /// What the runs share, with the axis, `GIMP implicit cells=… points=2 | pressure points terzaghi T_v=0.1`.
     pub series: String,
     /// In the first state.
     pub before: Behaviour,
@@ -296,26 +294,28 @@ fn level(word: &str) -> Option<(f64, String)> {
 }
 
 /// Each series that an error belongs to, with its level in it.
-fn places(name: &str) -> Vec<(String, f64)> {
-    let (case, measure) = parts(name);
-    if !is_error(measure) {
+fn places(key: &GoldenKey) -> Vec<(GoldenKey, f64)> {
+    if !key.measure.is_error() {
         return Vec::new();
     }
-    let words: Vec<&str> = case.split(' ').collect();
+    let words: Vec<&str> = key.case.split(' ').collect();
     let of_word = |(at, word): (usize, &&str)| {
         let (size, axis) = level(word)?;
         let mut shared = words.clone();
         shared[at] = &axis;
-        Some((format!("{} | {measure}", shared.join(" ")), size))
+        Some((GoldenKey { case: shared.join(" ").into(), ..key.clone() }, size))
     };
     words.iter().enumerate().filter_map(of_word).collect()
 }
 
 /// The behaviour of the series that are asked for, where they have enough levels.
-fn behaviours(values: &BTreeMap<String, f64>, asked: &BTreeSet<String>) -> BTreeMap<String, Behaviour> {
-    let mut series: BTreeMap<String, Vec<(f64, f64)>> = BTreeMap::new();
-    for (name, value) in values {
-        for (key, size) in places(name).into_iter().filter(|(key, _)| asked.contains(key)) {
+fn behaviours(
+    values: &BTreeMap<GoldenKey, f64>,
+    asked: &BTreeSet<GoldenKey>,
+) -> BTreeMap<GoldenKey, Behaviour> {
+    let mut series: BTreeMap<GoldenKey, Vec<(f64, f64)>> = BTreeMap::new();
+    for (key, value) in values {
+        for (key, size) in places(key).into_iter().filter(|(key, _)| asked.contains(key)) {
             series.entry(key).or_default().push((size, *value));
         }
     }
@@ -335,23 +335,23 @@ fn behaviours(values: &BTreeMap<String, f64>, asked: &BTreeSet<String>) -> BTree
 
 /// The series with values that moved whose class is another, or whose order moved by 0.05.
 pub(crate) fn order_changes(
-    before: &BTreeMap<String, f64>,
-    after: &BTreeMap<String, f64>,
+    before: &BTreeMap<GoldenKey, f64>,
+    after: &BTreeMap<GoldenKey, f64>,
     differences: &[Difference],
 ) -> Vec<OrderChange> {
     let moved =
         differences.iter().filter(|difference| difference.golden.is_some() && difference.found.is_some());
-    let asked: BTreeSet<String> =
-        moved.flat_map(|difference| places(&difference.name)).map(|(key, _)| key).collect();
+    let asked: BTreeSet<GoldenKey> =
+        moved.flat_map(|difference| places(&difference.key)).map(|(key, _)| key).collect();
     let mut after = behaviours(after, &asked);
-    let change = |(series, before): (String, Behaviour)| {
+    let change = |(series, before): (GoldenKey, Behaviour)| {
         let after = after.remove(&series)?;
         let order_moved = match (before.order, after.order) {
             (Some(a), Some(b)) => (a - b).abs() > TOLD,
             (a, b) => a.is_some() != b.is_some(),
         };
         let is_other = before.class != after.class || order_moved;
-        is_other.then_some(OrderChange { series, before, after })
+        is_other.then(|| OrderChange { series: series.to_string(), before, after })
     };
     behaviours(before, &asked).into_iter().filter_map(change).collect()
 }
@@ -361,31 +361,28 @@ mod tests {
     use super::*;
     use crate::golden::GoldenFile;
     use crate::golden::compare::compare;
-    use crate::golden::inputs::CaseInputs;
+    use crate::golden::measure::key;
 
-    fn state(values: &[(&str, f64)], modulus: &str) -> StudyState {
-        let values: BTreeMap<String, f64> =
-            values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
-        let own = |case: &str| (case.to_owned(), [("cells".to_owned(), case[6..].to_owned())].into());
-        let inputs = CaseInputs {
-            shared: [("youngs_modulus".to_owned(), modulus.to_owned())].into(),
-            own: ["cells=4", "cells=8"].map(own).into(),
-        };
-        let golden = GoldenFile { inputs, values, ..GoldenFile::of("s", &[], "-") };
-        StudyState::of_golden(golden)
+    fn state(values: &[(GoldenKey, f64)]) -> StudyState {
+        let values = values.iter().cloned().collect();
+        StudyState::of_golden(GoldenFile { values, ..GoldenFile::of("s", &[], "-") })
     }
 
-    const BEFORE: [(&str, f64); 4] = [
-        ("cells=4 | point updates", 100.0),
-        ("cells=4 | pressure points l2 terzaghi T_v=0.1", 1e-2),
-        ("cells=8 | point updates", 400.0),
-        ("cells=8 | pressure points l2 terzaghi T_v=0.1", 2e-3),
-    ];
+    fn before() -> [(GoldenKey, f64); 4] {
+        let steps = |case: &str| key(case, None, "steps");
+        let error = |case: &str| key(case, 0.1, "pressure points terzaghi");
+        [
+            (steps("cells=4"), 100.0),
+            (error("cells=4"), 1e-2),
+            (steps("cells=8"), 400.0),
+            (error("cells=8"), 2e-3),
+        ]
+    }
 
-    fn with(change: impl Fn(&mut [(&'static str, f64); 4])) -> StudyComparison {
-        let mut after = BEFORE;
+    fn with(change: impl Fn(&mut [(GoldenKey, f64); 4])) -> StudyComparison {
+        let mut after = before();
         change(&mut after);
-        StudyComparison::of("s", &state(&BEFORE, "1e6"), &state(&after, "1e6"))
+        StudyComparison::of("s", &state(&before()), &state(&after))
     }
 
     #[test]
@@ -410,31 +407,36 @@ mod tests {
 
     #[test]
     fn values_that_are_gone_are_a_regression_and_new_ones_are_not() {
-        let fewer = StudyComparison::of("s", &state(&BEFORE, "1e6"), &state(&BEFORE[..3], "1e6"));
+        let fewer = StudyComparison::of("s", &state(&before()), &state(&before()[..3]));
         assert!(fewer.is_regression() && fewer.unpaired == 1);
-        let more = StudyComparison::of("s", &state(&BEFORE[..3], "1e6"), &state(&BEFORE, "1e6"));
+        let more = StudyComparison::of("s", &state(&before()[..3]), &state(&before()));
         assert!(!more.is_regression() && more.unpaired == 1);
     }
 
     #[test]
-    fn a_case_whose_label_tells_another_input_is_compared_with_its_nearest() {
-        let mut after = state(&BEFORE, "1.1e6");
-        let finer = after.golden.inputs.own.remove("cells=8").expect("a case");
-        after.golden.inputs.own.insert("cells=9".to_owned(), [("cells".to_owned(), "9".to_owned())].into());
-        assert_ne!(finer, after.golden.inputs.own["cells=9"]);
-        after.golden.values = BEFORE.map(|(name, value)| (name.replace("cells=8", "cells=9"), value)).into();
-        let found = StudyComparison::of("s", &state(&BEFORE, "1e6"), &after);
+    fn inputs_that_differ_are_told_and_a_case_of_other_inputs_and_label_has_no_partner() {
+        let text = |modulus: &str, cells: &str| {
+            format!(
+                "title = 't'\nscene = 'terzaghi'\nmaterial.youngs_modulus = {modulus}\noutput.time_factors = [0.1]\n\
+                 [[sweep]]\nmethod = ['MPM']\nintegrator = ['implicit']\ncells = [2, {cells}]\n"
+            )
+        };
+        let of = |modulus: &str, cells: &str| {
+            StudyState::of_records("s", &crate::campaign::runner::records_of(&text(modulus, cells)))
+        };
+        let found = StudyComparison::of("s", &of("1e6", "3"), &of("1.1e6", "4"));
         let told: Vec<String> = found.inputs.iter().map(InputChange::sentence).collect();
-        assert_eq!(told, ["youngs_modulus 1e6 → 1.1e6 in 2 cases", "cells 8 → 9 in 1 case"]);
-        assert_eq!((found.unpaired, found.is_regression(), found.has_changed()), (0, false, true));
+        assert_eq!(told, ["youngs_modulus 1e6 Pa → 1.1e6 Pa in 1 case"]);
+        assert!(found.is_regression() && found.has_changed() && found.unpaired > 0);
+        assert_eq!(found.cases_apart.map(|cases| cases.len()), [1, 1]);
     }
 
     #[test]
     fn an_order_that_fell_is_told_and_a_constant_that_grew_is_not() {
-        let values = |errors: [f64; 3]| -> BTreeMap<String, f64> {
-            let names =
-                [4, 8, 16].map(|cells| format!("GIMP implicit cells={cells} points=2 | pressure T_v=0.1"));
-            names.into_iter().zip(errors).collect()
+        let values = |errors: [f64; 3]| -> BTreeMap<GoldenKey, f64> {
+            let case = |cells: u32| format!("GIMP implicit cells={cells} points=2");
+            let keys = [4, 8, 16].map(|cells| key(&case(cells), 0.1, "pressure points terzaghi"));
+            keys.into_iter().zip(errors).collect()
         };
         let before = values([4e-2, 1e-2, 2.5e-3]);
         let changes = |after: [f64; 3]| {
@@ -445,7 +447,7 @@ mod tests {
         assert_eq!(changes([8e-2, 2e-2, 5e-3]), []);
         let first = changes([4e-2, 2e-2, 1e-2]);
         assert_eq!(first.len(), 1);
-        assert_eq!(first[0].series, "GIMP implicit cells=… points=2 | pressure T_v=0.1");
+        assert_eq!(first[0].series, "GIMP implicit cells=… points=2 | pressure points terzaghi T_v=0.1");
         let [before, after] = [&first[0].before, &first[0].after].map(|one| one.order.expect("an order"));
         assert!((before - 2.0).abs() < 1e-9 && (after - 1.0).abs() < 1e-9);
         // Below round-off there is no order.
@@ -459,7 +461,7 @@ mod tests {
     fn a_study_of_one_state_only_is_told_with_the_name_of_that_state() {
         let of = |name: &str, studies: &[&str]| State {
             name: name.to_owned(),
-            studies: studies.iter().map(|study| ((*study).to_owned(), state(&BEFORE, "1e6"))).collect(),
+            studies: studies.iter().map(|study| ((*study).to_owned(), state(&before()))).collect(),
             notes: vec![format!("note of {name}")],
         };
         let (before, after) = (of("old", &["both", "gone"]), of("young", &["both", "new", "newer"]));
@@ -481,7 +483,7 @@ mod tests {
     fn seconds_are_summed_over_the_cases_of_both_states() {
         let with = |cases: &[(&str, [f64; 3])]| {
             let seconds = cases.iter().map(|(case, runs)| ((*case).to_owned(), runs.to_vec()));
-            StudyState { seconds: seconds.collect(), ..state(&BEFORE, "1e6") }
+            StudyState { seconds: seconds.collect(), ..state(&before()) }
         };
         let before = with(&[("a", [3.0, 1.0, 2.0]), ("b", [10.0, 30.0, 20.0]), ("gone", [9.0; 3])]);
         let after = with(&[("a", [4.0, 6.0, 5.0]), ("b", [40.0; 3]), ("new", [7.0; 3])]);
@@ -492,39 +494,39 @@ mod tests {
 
     #[test]
     fn an_arrow_is_that_of_the_pressure_at_the_last_output_wherever_it_is_listed() {
-        let named = |factor: f64| -> BTreeMap<String, f64> {
-            let rows = [
-                ("effective_stress points l2 terzaghi T_v=10", 1e-1),
-                ("point updates", 100.0),
-                ("pressure points l2 terzaghi T_v=0.1", 2e-2),
-                ("pressure points l2 terzaghi T_v=10", 3e-2),
-                ("pressure points l2 terzaghi T_v=2", 4e-2),
-                ("settlement surface relative terzaghi T_v=10", -5e-2),
-            ];
-            rows.map(|(name, value)| (format!("MPM | {name}"), factor * value)).into()
+        let of = |rows: &[(Option<f64>, &str, f64)], factor: f64| -> BTreeMap<GoldenKey, f64> {
+            rows.iter().map(|(time, measure, value)| (key("MPM", *time, measure), factor * value)).collect()
         };
-        let [arrow] = arrows(&named(1.0), &named(2.0)).try_into().unwrap_or_else(|_| panic!("one case"));
+        let rows = [
+            (Some(10.0), "effective_stress points terzaghi", 1e-1),
+            (None, "steps", 100.0),
+            (Some(0.1), "pressure points terzaghi", 2e-2),
+            (Some(10.0), "pressure points terzaghi", 3e-2),
+            (Some(10.0), "pressure nodes terzaghi", 6e-2),
+            (Some(2.0), "pressure points terzaghi", 4e-2),
+            (Some(10.0), "settlement surface terzaghi", -5e-2),
+        ];
+        let [arrow] =
+            arrows(&of(&rows, 1.0), &of(&rows, 2.0)).try_into().unwrap_or_else(|_| panic!("one case"));
         assert_eq!((arrow.before, arrow.after), ((100.0, 3e-2), (200.0, 6e-2)));
-        // Without a pressure the last of what there is, by its size; without a counter or an error there is none.
+        // Without a pressure the last of what there is, by its size; without steps or an error there is none.
+        let settled = |time: f64, value: f64| (Some(time), "settlement surface terzaghi", value);
+        let steps = (None, "steps", 1.0);
         for (rows, found) in [
-            (&["point updates", "settlement a T_v=0.1", "settlement a T_v=2"][..], Some((1.0, 3.0))),
-            (&["point updates", "steps", "water balance T_v=2"], None),
-            (&["steps", "settlement a T_v=2"], None),
+            (vec![steps, settled(0.1, -2.0), settled(2.0, -3.0)], vec![(1.0, 3.0)]),
+            (vec![steps, (Some(2.0), "water balance", -3.0)], vec![]),
+            (vec![settled(2.0, 1.0)], vec![]),
         ] {
-            let rows: BTreeMap<String, f64> = rows
-                .iter()
-                .zip([1.0, -2.0, -3.0])
-                .map(|(name, value)| (format!("MPM | {name}"), value))
-                .collect();
+            let rows = of(&rows, 1.0);
             let told: Vec<(f64, f64)> = arrows(&rows, &rows).into_iter().map(|arrow| arrow.after).collect();
-            assert_eq!(told, found.into_iter().collect::<Vec<_>>());
+            assert_eq!(told, found);
         }
     }
 
     #[test]
     fn signs_of_a_series_belong_to_their_levels_in_whatever_order_they_are_listed() {
-        let name = |cells: u32| format!("MPM cells={cells} | settlement surface relative terzaghi T_v=0.1");
-        let values: BTreeMap<String, f64> = [(4, 0.16), (8, -0.04), (16, 0.01), (32, -0.0025)]
+        let name = |cells: u32| key(&format!("MPM cells={cells}"), 0.1, "settlement surface terzaghi");
+        let values: BTreeMap<GoldenKey, f64> = [(4, 0.16), (8, -0.04), (16, 0.01), (32, -0.0025)]
             .map(|(cells, error)| (name(cells), error))
             .into();
         let asked = places(&name(4)).into_iter().map(|(key, _)| key).collect();
@@ -553,9 +555,10 @@ mod tests {
 
     #[test]
     fn an_order_is_told_from_a_twentieth_on_and_one_that_is_lost_or_won() {
-        let values = |order: f64| -> BTreeMap<String, f64> {
+        let values = |order: f64| -> BTreeMap<GoldenKey, f64> {
             let level = |cells: u32| (f64::from(cells) / 4.0).powf(-order);
-            [4, 8, 16].map(|cells| (format!("MPM cells={cells} | pressure T_v=0.1"), level(cells))).into()
+            let name = |cells: u32| key(&format!("MPM cells={cells}"), 0.1, "pressure points terzaghi");
+            [4, 8, 16].map(|cells| (name(cells), level(cells))).into()
         };
         let told = |before: f64, after: f64| {
             let (before, after) = (values(before), values(after));

@@ -2,10 +2,10 @@
 //! are run in turn.
 
 use crate::campaign::runner::{RunOptions, run_study};
+use crate::case::Case;
 use crate::case::planned::Tier;
 use crate::golden::GoldenFile;
 use crate::golden::compare::compare;
-use crate::golden::inputs::CaseInputs;
 use crate::golden::text_error::GoldenTextError;
 use crate::history::repository::{Commit, GitError, Repository};
 use crate::record::named_cases::NamedCases;
@@ -19,8 +19,10 @@ use std::path::{Path, PathBuf};
 /// A study in one state.
 #[derive(Clone, Debug)]
 pub(crate) struct StudyState {
-    /// Inputs, errors and work counters with their tolerances.
+    /// Errors and steps with their tolerances.
     pub golden: GoldenFile,
+    /// The cases by their labels; none where the study of golden values is not known.
+    pub cases: BTreeMap<String, Case>,
     /// Processor seconds of every run of each case by label, where they were measured.
     pub seconds: BTreeMap<String, Vec<f64>>,
     /// What made the values: this program and others, with their commits.
@@ -116,13 +118,13 @@ impl State {
         for (path, name) in golden {
             let read = texts.get(&object(path)).map(|text| GoldenFile::from_text(text));
             match read {
-                Some(Ok(mut golden)) => {
-                    if golden.inputs.is_unknown() {
-                        let source = study_of(name).and_then(|path| Some((path, texts.get(&object(path))?)));
-                        let inputs = source.and_then(|(path, text)| inputs_of_study(path, text));
-                        golden.inputs = inputs.unwrap_or_default();
-                    }
-                    state.studies.insert(name.to_owned(), StudyState::of_golden(golden));
+                Some(Ok(golden)) => {
+                    let source = study_of(name).and_then(|path| Some((path, texts.get(&object(path))?)));
+                    let cases = source.and_then(|(path, text)| cases_of_study(path, text));
+                    let made_by = vec![format!("what commit {} has", commit.short())];
+                    let cases = cases.unwrap_or_default();
+                    let known = StudyState { cases, made_by, ..StudyState::of_golden(golden) };
+                    state.studies.insert(name.to_owned(), known);
                 }
                 Some(Err(reason)) => state.notes.push(unreadable(&commit, path, &reason)),
                 None => {}
@@ -149,10 +151,9 @@ fn leave_out(named: &NamedCases, records: &mut Vec<Record>) -> Option<String> {
 }
 
 impl StudyState {
-    /// The state of golden values, which have no times.
+    /// The state of golden values alone, which have no times.
     pub fn of_golden(golden: GoldenFile) -> Self {
-        let made_by = vec![golden.provenance.made_by()];
-        Self { golden, seconds: BTreeMap::new(), made_by }
+        Self { golden, cases: BTreeMap::new(), seconds: BTreeMap::new(), made_by: Vec::new() }
     }
 
     /// The state of records.
@@ -170,6 +171,7 @@ impl StudyState {
         let made_by: BTreeSet<String> = own.chain(records.iter().filter_map(of_others)).collect();
         Self {
             golden: GoldenFile::of(study, records, "records"),
+            cases: records.iter().map(|record| (record.case.label(), record.case.clone())).collect(),
             seconds: seconds.collect(),
             made_by: made_by.into_iter().collect(),
         }
@@ -188,10 +190,10 @@ pub(crate) fn unreadable(commit: &Commit, path: &str, reason: &GoldenTextError) 
     format!("{path} at {} is passed over: {}", commit.short(), reason.lines().next().unwrap_or_default())
 }
 
-/// The inputs of the cases of a study as it stood then; `None` where this program refuses it.
-fn inputs_of_study(path: &str, text: &str) -> Option<CaseInputs> {
+/// The cases of a study as it stood then; `None` where this program refuses it.
+fn cases_of_study(path: &str, text: &str) -> Option<BTreeMap<String, Case>> {
     let study = Study::check(&StudySource { name: path.to_owned(), text: text.to_owned() }).ok()?;
-    Some(CaseInputs::of(study.cases(Tier::Full)))
+    Some(study.planned.into_iter().map(|planned| (planned.case.label(), planned.case)).collect())
 }
 
 /// The study with a command in place of that of its one solver, and with the cases of that solver alone. The command is

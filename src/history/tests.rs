@@ -1,9 +1,9 @@
 //! A small repository of golden values over its commits, folders of records, and commands in turn.
 
 use crate::campaign::runner::{RunOptions, run_study};
-use crate::case::Tier;
+use crate::case::{Case, Tier};
 use crate::golden::GoldenFile;
-use crate::golden::inputs::CaseInputs;
+use crate::golden::measure::key;
 use crate::history::comparison::Trend;
 use crate::history::repository::{Commit, GitError, Repository};
 use crate::history::state::{State, StateError};
@@ -25,12 +25,12 @@ fn git(at: &Path, words: &[&str]) {
 }
 
 const LABEL: &str = "MPM implicit cells=4 points=2 growth=0.05";
+const PRESSURE: &str = "pressure points terzaghi";
 
 /// A golden file of one case with an error and its steps.
 fn golden(study: &str, error: f64, steps: f64, reason: &str) -> String {
-    let values = [("pressure points l2 terzaghi T_v=0.1", error), ("steps", steps)];
-    let values = values.map(|(measure, value)| (format!("{LABEL} | {measure}"), value)).into();
-    GoldenFile { values, ..GoldenFile::of(study, &[], reason) }.to_text().expect("a text")
+    let values = [(key(LABEL, 0.1, PRESSURE), error), (key(LABEL, None, "steps"), steps)];
+    GoldenFile { values: values.into(), ..GoldenFile::of(study, &[], reason) }.to_text().expect("a text")
 }
 
 const STUDY: &str = "title = 't'\nscene = 'terzaghi'\nmaterial.porosity = 0.3\noutput.time_factors = [0.1]\n[[sweep]]\n\
@@ -199,12 +199,13 @@ fn a_revision_has_the_studies_of_its_folder_with_the_inputs_that_they_had_then()
         assert_eq!(state.name, format!("{revision} ({})", short(revision)));
         assert_eq!(names(&state), ["a", "b"]);
         assert_eq!(state.notes, [""; 0]);
-        let golden = &state.studies["a"].golden;
+        let found = &state.studies["a"];
         let study = STUDY.replace("0.3", porosity);
         let study = Study::check(&StudySource { name: "a.toml".to_owned(), text: study }).expect("sound");
-        assert_eq!(golden.inputs, CaseInputs::of(study.cases(Tier::Full)));
-        assert_eq!(golden.values[&format!("{LABEL} | pressure points l2 terzaghi T_v=0.1")], error);
-        assert!(state.studies["b"].golden.inputs.is_unknown(), "no study of its name");
+        assert_eq!(found.cases.values().collect::<Vec<&Case>>(), study.cases(Tier::Full));
+        assert_eq!(found.golden.values[&key(LABEL, 0.1, PRESSURE)], error);
+        assert_eq!(found.made_by, [format!("what commit {} has", short(revision))]);
+        assert!(state.studies["b"].cases.is_empty(), "no study of its name");
     }
     let state = of("HEAD", "golden").expect("a state");
     let bad = format!("golden/bad.csv at {} is passed over: line 1: the file ends within it", short("HEAD"));
@@ -231,7 +232,7 @@ fn records_that_cannot_be_read_are_counted_and_a_folder_without_any_is_refused()
     let read = |cases: usize, passed_over: &[&str]| {
         let state = State::of_records(at).expect("a state");
         assert_eq!(state.name, at.display().to_string());
-        assert_eq!(state.studies.get("s").map_or(0, |study| study.golden.inputs.own.len()), cases);
+        assert_eq!(state.studies.get("s").map_or(0, |study| study.cases.len()), cases);
         let end = format!(
             "of `s` in {} passed over: of another layout or damaged; run the study again",
             at.display()

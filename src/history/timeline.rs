@@ -1,7 +1,8 @@
 //! Golden values over the commits that changed them.
 
+use crate::golden::GoldenFile;
 use crate::golden::compare::{Difference, case_changes, cases_apart, compare};
-use crate::golden::{GoldenFile, is_counter, is_error, parts};
+use crate::golden::measure::{GoldenKey, Measure};
 use crate::history::comparison::{StudyComparison, Trend};
 use crate::history::repository::{Commit, GitError, Repository};
 use crate::history::state::{StudyState, golden_name, unreadable};
@@ -130,14 +131,14 @@ impl Step {
         };
         let Some(before) = before else { return step };
         [step.went, step.came] = cases_apart(before.values.keys(), golden.values.keys());
-        step.shared = before.values.keys().filter(|name| golden.values.contains_key(*name)).count();
-        step.error_index *= mean_ratio(before, golden, |name| is_error(parts(name).1));
-        step.work_index *= mean_ratio(before, golden, |name| is_counter(parts(name).1));
+        step.shared = before.values.keys().filter(|key| golden.values.contains_key(*key)).count();
+        step.error_index *= mean_ratio(before, golden, |key| key.measure.is_error());
+        step.work_index *= mean_ratio(before, golden, |key| key.measure == Measure::Steps);
         let differences = compare(before, &golden.values);
         let paired = |one: &&Difference| one.golden.is_some() && one.found.is_some();
         step.moved = differences.iter().filter(paired).count();
         step.unpaired = differences.len() - step.moved;
-        let errors = differences.iter().filter(|one| is_error(parts(&one.name).1));
+        let errors = differences.iter().filter(|one| one.key.measure.is_error());
         step.largest_change = errors.filter_map(Difference::relative_change).fold(0.0, f64::max);
         let state = |golden: &GoldenFile| StudyState::of_golden(golden.clone());
         if !case_changes(&differences).is_empty() {
@@ -154,9 +155,9 @@ fn json_name<'a>(path: &'a str, folder: &str) -> Option<&'a str> {
 }
 
 /// Geometric mean of the ratios of what both files have.
-fn mean_ratio(before: &GoldenFile, after: &GoldenFile, is_meant: impl Fn(&str) -> bool) -> f64 {
-    let ratios = before.values.iter().filter(|(name, _)| is_meant(name)).filter_map(|(name, value)| {
-        let (before, after) = (value.abs(), after.values.get(name)?.abs());
+fn mean_ratio(before: &GoldenFile, after: &GoldenFile, is_meant: impl Fn(&GoldenKey) -> bool) -> f64 {
+    let ratios = before.values.iter().filter(|(key, _)| is_meant(key)).filter_map(|(key, value)| {
+        let (before, after) = (value.abs(), after.values.get(key)?.abs());
         (before > ROUND_OFF && after > ROUND_OFF).then(|| elementary::ln(after / before))
     });
     let (sum, count) = ratios.fold((0.0, 0_u32), |(sum, count), ratio| (sum + ratio, count + 1));
@@ -166,58 +167,59 @@ fn mean_ratio(before: &GoldenFile, after: &GoldenFile, is_meant: impl Fn(&str) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::golden::measure::key;
+
+    fn error(case: &str) -> GoldenKey {
+        key(case, 0.1, "pressure points terzaghi")
+    }
+
+    fn steps(case: &str) -> GoldenKey {
+        key(case, None, "steps")
+    }
+
+    fn golden<const N: usize>(values: [(GoldenKey, f64); N]) -> GoldenFile {
+        GoldenFile { values: values.into(), ..GoldenFile::of("study", &[], "test") }
+    }
+
+    fn commit() -> Commit {
+        Commit { hash: "0".repeat(40), date: "2026-11-25".to_owned(), subject: "s".to_owned() }
+    }
 
     #[test]
     fn a_mean_ratio_is_that_of_later_to_earlier_values_of_what_both_have() {
-        let golden = |values: &[(&str, f64)]| GoldenFile {
-            values: values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
-            ..GoldenFile::of("study", &[], "test")
+        let of = |both: [f64; 4], alone: &str| {
+            let [a, b, c, zero] = ["a", "b", "c", "zero"].map(error);
+            golden([(a, both[0]), (b, both[1]), (c, both[2]), (zero, both[3]), (error(alone), 3.0)])
         };
-        let before = golden(&[("a", 2.0), ("b", -5.0), ("c", 1.0), ("gone", 3.0), ("zero", 0.0)]);
-        let after = golden(&[("a", 16.0), ("b", 10.0), ("c", 1e3), ("new", 7.0), ("zero", 4.0)]);
-        let found = mean_ratio(&before, &after, |name| name != "c");
+        let (before, after) = (of([2.0, -5.0, 1.0, 0.0], "gone"), of([16.0, 10.0, 1e3, 4.0], "new"));
+        let found = mean_ratio(&before, &after, |key| *key.case != *"c");
         assert!((found - 4.0).abs() < 1e-14, "8 and 2: {found}");
-        assert_eq!(mean_ratio(&before, &after, |name| name == "gone"), 1.0);
+        assert_eq!(mean_ratio(&before, &after, |key| *key.case == *"gone"), 1.0);
     }
 
     #[test]
     fn a_step_counts_what_moved_and_apart_from_it_what_has_no_partner() {
-        let golden = |values: &[(&str, f64)]| GoldenFile {
-            values: values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
-            ..GoldenFile::of("study", &[], "test")
-        };
-        let [a, b, c] = ["a", "b", "c"].map(|case| format!("{case} | pressure points l2 terzaghi T_v=0.1"));
-        let before = golden(&[(&a, 1e-2), (&b, 2e-2), ("a | steps", 4.0), ("a | point updates", 8.0)]);
-        let after = golden(&[(&a, 3e-2), (&c, 2e-2), ("a | steps", 6.0), ("a | point updates", 8.0)]);
-        let commit = Commit { hash: "0".repeat(40), date: "2026-11-25".to_owned(), subject: "s".to_owned() };
-        let first = Step::of(&commit, None, None, &before);
-        assert_eq!((first.values, first.moved, first.unpaired, first.error_index), (4, 0, 0, 1.0));
-        let step = Step::of(&commit, Some(&first), Some(&before), &after);
-        assert_eq!(
-            (step.values, step.moved, step.unpaired),
-            (4, 2, 2),
-            "an error and the steps; `b` and `c`"
-        );
+        let [a, b, c] = ["a", "b", "c"].map(error);
+        let before = golden([(a.clone(), 1e-2), (b, 2e-2), (steps("a"), 4.0)]);
+        let after = golden([(a, 3e-2), (c, 2e-2), (steps("a"), 6.0)]);
+        let first = Step::of(&commit(), None, None, &before);
+        assert_eq!((first.values, first.moved, first.unpaired, first.error_index), (3, 0, 0, 1.0));
+        let step = Step::of(&commit(), Some(&first), Some(&before), &after);
+        let counts = (step.values, step.moved, step.unpaired);
+        assert_eq!(counts, (3, 2, 2), "an error and the steps; `b` and `c`");
         assert!((step.error_index - 3.0).abs() < 1e-14, "{}", step.error_index);
-        assert!((step.work_index - 1.5_f64.sqrt()).abs() < 1e-14, "{}", step.work_index);
+        assert!((step.work_index - 1.5).abs() < 1e-14, "{}", step.work_index);
         assert!((step.largest_change - 2.0 / 3.0).abs() < 1e-14, "{}", step.largest_change);
-        let next = Step::of(&commit, Some(&step), Some(&after), &after);
+        let next = Step::of(&commit(), Some(&step), Some(&after), &after);
         assert_eq!((next.moved, next.unpaired, next.largest_change), (0, 0, 0.0));
         assert_eq!((next.error_index, next.work_index), (step.error_index, step.work_index));
     }
 
     #[test]
     fn where_errors_and_work_went_are_told_apart_and_the_indices_go_on_from_the_last_step() {
-        let golden = |error: f64, steps: f64| {
-            let values = [("a | pressure points l2 terzaghi T_v=0.1", error), ("a | steps", steps)];
-            GoldenFile {
-                values: values.map(|(name, value)| (name.to_owned(), value)).into(),
-                ..GoldenFile::of("study", &[], "test")
-            }
-        };
-        let commit = Commit { hash: "0".repeat(40), date: "2026-11-25".to_owned(), subject: "s".to_owned() };
-        let before = golden(1e-2, 40.0);
-        let first = Step::of(&commit, None, None, &before);
+        let of = |value: f64, count: f64| golden([(error("a"), value), (steps("a"), count)]);
+        let before = of(1e-2, 40.0);
+        let first = Step::of(&commit(), None, None, &before);
         for (error, steps, accuracy, cost) in [
             (2e-2, 40.0, Trend::Regressed, Trend::Same),
             (5e-3, 40.0, Trend::Improved, Trend::Same),
@@ -225,10 +227,10 @@ mod tests {
             (1e-2, 20.0, Trend::Same, Trend::Improved),
             (2e-2, 20.0, Trend::Regressed, Trend::Improved),
         ] {
-            let step = Step::of(&commit, Some(&first), Some(&before), &golden(error, steps));
+            let step = Step::of(&commit(), Some(&first), Some(&before), &of(error, steps));
             assert_eq!((step.accuracy, step.cost), (accuracy, cost), "{error} {steps}");
             let last = Step { error_index: 3.0, work_index: 5.0, ..first.clone() };
-            let step = Step::of(&commit, Some(&last), Some(&before), &golden(error, steps));
+            let step = Step::of(&commit(), Some(&last), Some(&before), &of(error, steps));
             assert!((step.error_index - 3.0 * error / 1e-2).abs() < 1e-12, "{}", step.error_index);
             assert!((step.work_index - 5.0 * steps / 40.0).abs() < 1e-12, "{}", step.work_index);
         }

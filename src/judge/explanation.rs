@@ -3,8 +3,8 @@
 
 use crate::case::{Case, Norm};
 use crate::golden::compare::{Difference, compare};
-use crate::golden::inputs::{CaseInputs, InputChange, Pairing};
-use crate::golden::{GoldenFile, measure_name, values_of};
+use crate::golden::measure::{GoldenKey, Measure, TimeFactor};
+use crate::golden::{GoldenFile, values_of};
 use crate::judge::error_place::{ErrorPlace, place_of};
 use crate::judge::outside_runs::OutsideRunFinding;
 use crate::judge::paths::{grouped, level_size, paths};
@@ -50,8 +50,8 @@ pub struct Explanation {
     pub carriers: Vec<Carrier>,
     /// Series of the first carrier's error, one an axis that the study refines.
     pub levels: Vec<LevelSeries>,
-    /// Inputs of this case that are not those of its golden values.
-    pub inputs: Vec<InputChange>,
+    /// Whether its inputs are others than those of its golden values.
+    pub has_other_inputs: bool,
     /// Differences from the golden values of this case.
     pub differences: Vec<Difference>,
     /// Golden values of this case that agree.
@@ -62,45 +62,40 @@ pub struct Explanation {
     pub outside_run: Option<OutsideRunFinding>,
 }
 
-/// Explains a record. `focus` puts the carrier of a golden value's name first. Golden values are those beside the cases of
-/// the study ([`GoldenFile::beside`]).
+/// Explains a record. `focus`, a quantity and a sample as they begin the name of a golden value, puts their carrier first.
+/// Golden values are those beside the cases of the study, with the cases that have other inputs ([`GoldenFile::beside`]).
 ///
 /// # Errors
 /// When a reference refuses the case.
 pub fn explain(
     record: &Record,
     siblings: &[&Case],
-    golden: Option<&GoldenFile>,
+    golden: Option<&(GoldenFile, Vec<String>)>,
     focus: Option<&str>,
 ) -> Result<Explanation, ExactError> {
     let mut carriers = carriers_of(record)?;
     carriers.sort_by(|a, b| b.row.value.abs().total_cmp(&a.row.value.abs()));
     if let Some(focus) = focus {
-        carriers.sort_by_key(|carrier| !same_measure(&measure_name(&carrier.row), focus));
+        let words: Vec<&str> = focus.split(' ').take(2).collect();
+        carriers.sort_by_key(|carrier| words != [carrier.row.quantity.name(), carrier.row.sample.name()]);
     }
+    let label = record.case.label();
+    let has_other_inputs = golden.is_some_and(|(_, others)| others.contains(&label));
+    let golden = golden.map(|(golden, _)| golden);
     let levels = match (carriers.first(), golden) {
         (Some(first), Some(golden)) => levels_of(record, siblings, golden, &first.row),
         _ => Vec::new(),
     };
     let (differences, agreeing) = golden.map_or((Vec::new(), 0), |golden| differences_of(record, golden));
-    let inputs = golden.map_or(Vec::new(), |golden| {
-        Pairing::of(&golden.inputs.only(&record.case.label()), &CaseInputs::of([&record.case])).changes
-    });
     Ok(Explanation {
         carriers,
         levels,
-        inputs,
+        has_other_inputs,
         differences,
         agreeing,
         has_golden: golden.is_some(),
         outside_run: OutsideRunFinding::new(record),
     })
-}
-
-/// Whether two names are of one quantity and place, whatever norm and time.
-fn same_measure(a: &str, b: &str) -> bool {
-    let words = |name: &str| name.split(' ').take(2).map(str::to_owned).collect::<Vec<_>>();
-    words(a) == words(b)
 }
 
 /// Against the first reference, the output with the largest error of every quantity and place.
@@ -134,8 +129,9 @@ fn levels_of(record: &Record, siblings: &[&Case], golden: &GoldenFile, row: &Err
     records.push(record.clone());
     let is_own = |other: &Record| other.hash == record.hash;
     let error = |other: &Record| {
-        let name = format!("{} | {}", other.case.label(), measure_name(row));
-        if is_own(other) { Some(row.value.abs()) } else { golden.values.get(&name).map(|value| value.abs()) }
+        let time = Some(TimeFactor(row.time_factor));
+        let key = GoldenKey { case: other.case.label().into(), time, measure: Measure::of_error(row)? };
+        if is_own(other) { Some(row.value.abs()) } else { golden.values.get(&key).map(|value| value.abs()) }
     };
     let level_series = |axis: Axis| {
         let label = |case: &Case| match axis {
@@ -162,9 +158,9 @@ fn levels_of(record: &Record, siblings: &[&Case], golden: &GoldenFile, row: &Err
 
 /// Differences from the golden values of this case alone, and how many agree.
 fn differences_of(record: &Record, golden: &GoldenFile) -> (Vec<Difference>, usize) {
-    let prefix = format!("{} | ", record.case.label());
+    let label = record.case.label();
     let mut of_case = golden.clone();
-    of_case.values.retain(|name, _| name.starts_with(&prefix));
+    of_case.values.retain(|key, _| *key.case == *label);
     let differences = compare(&of_case, &values_of(std::slice::from_ref(record)));
     let there = differences.iter().filter(|one| one.golden.is_some()).count();
     let agreeing = of_case.values.len() - there;
@@ -185,15 +181,15 @@ mod tests {
         );
         let mut golden = GoldenFile { values: values_of(&records), ..GoldenFile::of("t", &[], "test") };
         let of_first = values_of(&records[..1]).len();
-        let errors: Vec<String> =
-            golden.values.keys().filter(|name| name.contains("pressure points")).cloned().collect();
-        for name in &errors {
-            *golden.values.get_mut(name).expect("there") *= 1.5;
+        let errors: Vec<GoldenKey> =
+            golden.values.keys().filter(|key| key.to_string().contains("pressure points")).cloned().collect();
+        for key in &errors {
+            *golden.values.get_mut(key).expect("there") *= 1.5;
         }
         // Labels that begin or end like that of the case are of others.
         let label = records[0].case.label();
         for other in [format!("{label} (E = 5e6)"), format!("{label}5"), format!("VP, {label}")] {
-            golden.values.insert(format!("{other} | steps"), 1.0);
+            golden.values.insert(crate::golden::measure::key(&other, None, "steps"), 1.0);
         }
         let (differences, agreeing) = differences_of(&records[0], &golden);
         assert_eq!((2 * differences.len(), differences.len() + agreeing), (errors.len(), of_first));

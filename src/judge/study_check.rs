@@ -8,8 +8,8 @@ use crate::foreign::reading::mapping_of;
 use crate::golden::compare::{
     CaseChange, Change, Difference, DifferenceGroup, case_changes, compare, groups_of,
 };
-use crate::golden::inputs::{CaseInputs, InputChange};
-use crate::golden::{GoldenError, GoldenFile, measure_name, parts, seconds_of, values_of};
+use crate::golden::measure::{GoldenKey, Measure, TimeFactor};
+use crate::golden::{GoldenError, GoldenFile, values_of};
 use crate::import::SampledState;
 use crate::import::mapping::Axes;
 use crate::judge::error_place::place_in_kept;
@@ -17,7 +17,7 @@ use crate::judge::paths::{StudyPaths, grouped};
 use crate::judge::proposals::proposals;
 use crate::judge::verdict::{Absent, Judgement, differing_repeats, judge_paths};
 use crate::measure::soundness::{self, PoorOutput};
-use crate::record::{Record, Status};
+use crate::record::{ErrorRow, Record, Status};
 use crate::score::diagnosis::diagnosis;
 use crate::study::check::Study;
 use crate::study::file::GoldenRule;
@@ -27,9 +27,6 @@ use oedometer_scenes::column::column_parameters;
 use oedometer_soil::wording::count_of;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-
-/// Wall time over the golden one from which on a warning is given.
-const SLOW: f64 = 2.0;
 
 /// A case with a sentence about it.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
@@ -51,8 +48,8 @@ pub struct StudyCheck {
     pub unsound: Vec<CaseNote>,
     /// Verdicts on expectations.
     pub judgements: Vec<Judgement>,
-    /// Inputs that are not those of the golden values, the most cases first.
-    pub inputs: Vec<InputChange>,
+    /// Labels of the cases whose inputs are others than those of their golden values.
+    pub other_inputs: Vec<String>,
     /// Expectations that the records meet, as TOML, for a study that has none.
     pub proposals: Vec<String>,
     /// Whether golden values are compared; the study may leave the verdict to its expectations.
@@ -115,17 +112,20 @@ impl StudyCheck {
         golden: Result<GoldenFile, GoldenError>,
     ) -> Self {
         let absent = Absent::among(records);
-        let inputs = CaseInputs::of(records.iter().map(|record| &record.case));
         let compares_golden = study.golden != GoldenRule::None;
         let unused = (golden.is_ok() && !compares_golden).then(|| {
             "the golden values of this study are not compared, because it says `golden = \"none\"`".to_owned()
         });
         let golden = golden.map(|golden| golden.allowing(study.golden));
         let golden = if compares_golden { golden } else { Err(GoldenError::Missing(PathBuf::new())) };
-        let golden = golden.map(|golden| absent.without(golden).beside(&inputs));
-        let changes = golden.as_ref().map(|(_, pairing)| pairing.changes.clone()).unwrap_or_default();
-        let golden = golden.map(|(golden, _)| golden);
-        let slow = golden.as_ref().ok().and_then(|golden| slowness(golden, seconds_of(records)));
+        let cases: Vec<&Case> = records.iter().map(|record| &record.case).collect();
+        let mut other_inputs = Vec::new();
+        let golden = golden.map(|golden| {
+            let (golden, others) = absent.without(golden).beside(&cases);
+            let golden = if study.has_dates { golden.at_the_times_of(&cases, &others) } else { golden };
+            other_inputs = others;
+            golden
+        });
         // Of a study without golden values none is compared.
         let values = golden.as_ref().map_or_else(|_| BTreeMap::new(), |_| values_of(records));
         let notes = |of: &dyn Fn(&Record) -> Vec<String>| {
@@ -143,7 +143,7 @@ impl StudyCheck {
                 failure.map(ToString::to_string).into_iter().collect()
             }),
             // Partial results of a failed run are not judged.
-            inputs: changes,
+            other_inputs,
             proposals: proposals(study, paths),
             unsound: notes(&|record| match record.status {
                 // How sound a contender's runs are is a result of the race.
@@ -154,8 +154,7 @@ impl StudyCheck {
             expected: study.expectations.len() + study.case_expectations.len(),
             unjudged: absent.unjudged(study, tier),
             held_back: absent.held_back(study),
-            warnings: (slow.into_iter())
-                .chain(unused)
+            warnings: (unused.into_iter())
                 .chain(unjudged_outputs(study, records))
                 .chain(absent.warnings())
                 .chain(differing_repeats(records))
@@ -173,11 +172,14 @@ impl StudyCheck {
     /// Adds the places with the largest errors of records that cannot be made again.
     fn with_places(mut self, records: &[Record]) -> Self {
         for group in &mut self.groups {
-            let (label, measure) = parts(&group.worst.name);
-            let record = records.iter().find(|record| record.case.label() == label);
+            let key = &group.worst.key;
+            let record = records.iter().find(|record| record.case.label() == *key.case);
             group.place = record.and_then(|record| {
-                let row = record.errors.iter().find(|row| measure_name(row) == measure)?;
-                place_in_kept(record, row)
+                let is_it = |row: &&ErrorRow| {
+                    key.time == Some(TimeFactor(row.time_factor))
+                        && Measure::of_error(row).as_ref() == Some(&key.measure)
+                };
+                place_in_kept(record, record.errors.iter().find(is_it)?)
             });
         }
         self
@@ -211,16 +213,15 @@ impl StudyCheck {
     /// Compares values alone.
     fn of_values(
         name: &str,
-        values: &BTreeMap<String, f64>,
+        values: &BTreeMap<GoldenKey, f64>,
         golden: Result<GoldenFile, GoldenError>,
     ) -> Self {
         let (groups, golden) = match golden {
             Err(error) => (Vec::new(), Err(error)),
             Ok(golden) => {
                 let differences = compare(&golden, values);
-                let new = values.keys().filter(|name| !golden.values.contains_key(*name));
-                let known = golden.values.keys().chain(new).map(String::as_str);
-                (groups_of(&differences, known), Ok(differences))
+                let new = values.keys().filter(|key| !golden.values.contains_key(*key));
+                (groups_of(&differences, golden.values.keys().chain(new)), Ok(differences))
             }
         };
         let changed =
@@ -230,7 +231,7 @@ impl StudyCheck {
             failed_cases: Vec::new(),
             unsound: Vec::new(),
             judgements: Vec::new(),
-            inputs: Vec::new(),
+            other_inputs: Vec::new(),
             proposals: Vec::new(),
             agreeing: values.len() - changed,
             groups,
@@ -246,6 +247,16 @@ impl StudyCheck {
         }
     }
 
+    /// A sentence on the cases whose inputs are others than those of their golden values, where there are any.
+    pub fn told_inputs(&self) -> Option<String> {
+        let first = self.other_inputs.first()?;
+        let (is, their) = if self.other_inputs.len() == 1 { ("is", "its") } else { ("are", "their") };
+        Some(format!(
+            "{} {is} of other inputs than {their} golden values, like `{first}`: `git diff` of the study shows which",
+            count_of(self.other_inputs.len(), "case", "cases")
+        ))
+    }
+
     /// Differences from the golden values; empty without a golden file.
     pub fn differences(&self) -> &[Difference] {
         self.golden.as_deref().unwrap_or_default()
@@ -253,12 +264,8 @@ impl StudyCheck {
 
     /// Whether a value moved that no better accuracy or lower cost of its case makes up for.
     fn has_moved(&self) -> bool {
-        let excused = |name: &str| {
-            let case = name.rsplit_once(" | ").map(|parts| parts.0);
-            let change = self.changes.iter().find(|change| Some(change.case.as_str()) == case);
-            change.is_some_and(CaseChange::is_stale)
-        };
-        self.differences().iter().any(|one| one.change == Change::Moved && !excused(&one.name))
+        let excused = |case: &str| self.changes.iter().any(|change| change.case == case && change.is_stale());
+        self.differences().iter().any(|one| one.change == Change::Moved && !excused(&one.key.case))
     }
 
     /// How the check came out, the worst first: a verdict, an unsound record or a value that moved,
@@ -273,7 +280,7 @@ impl StudyCheck {
             && (!self.compares_golden || matches!(&self.golden, Err(error) if error.is_missing()))
         {
             CheckEnd::HeldBack
-        } else if self.golden.is_err() || !self.differences().is_empty() || !self.inputs.is_empty() {
+        } else if self.golden.is_err() || !self.differences().is_empty() || !self.other_inputs.is_empty() {
             CheckEnd::Golden
         } else {
             CheckEnd::Pass
@@ -298,18 +305,6 @@ fn unjudged_outputs(study: &Study, records: &[Record]) -> Vec<String> {
         Some(format!("{}{more}: {}; this output is not judged", record.case.label(), output.sentence()))
     };
     groups.into_iter().filter_map(sentence).collect()
-}
-
-/// A warning about a wall time far beyond the golden one; not a verdict.
-fn slowness(golden: &GoldenFile, seconds: f64) -> Option<String> {
-    let before = golden.seconds.filter(|before| *before > 0.0)?;
-    (seconds > SLOW * before).then(|| {
-        format!(
-            "the cases took {seconds:.1} s of wall time in all, {:.1} times the {before:.1} s of the golden run: \
-             the machine, its load or the code; only work counters are judged",
-            seconds / before
-        )
-    })
 }
 
 /// Sentences on the other programs among records; of each with the same soil and body the finest mesh is looked at.
@@ -364,25 +359,13 @@ mod tests {
     use oedometer_convergence::ParetoChange;
 
     #[test]
-    fn a_run_is_slow_from_twice_the_golden_time_on() {
-        let golden = |seconds: Option<f64>| GoldenFile { seconds, ..GoldenFile::of("t", &[], "a test") };
-        let told = "the cases took 5.0 s of wall time in all, 2.5 times the 2.0 s of the golden run: the machine, its load \
-                    or the code; only work counters are judged";
-        assert_eq!(slowness(&golden(Some(2.0)), 5.0), Some(told.to_owned()));
-        assert!(slowness(&golden(Some(2.0)), 4.1).is_some());
-        for before in [Some(2.0), Some(0.0), None] {
-            assert_eq!(slowness(&golden(before), 4.0), None, "{before:?}");
-        }
-    }
-
-    #[test]
     fn a_check_ends_by_the_worst_that_it_found() {
         let empty =
             || StudyCheck::of_values("t", &BTreeMap::new(), Err(GoldenError::Missing("t.csv".into())));
-        let named = |name: &str| format!("{name} | pressure points l2");
+        let named = |case: &str| crate::golden::measure::key(case, 0.1, "pressure points terzaghi");
         let difference = |case: &str, change: Change| {
             let (golden, found) = (Some(1.0), Some(2.0));
-            Difference { name: named(case), change, golden, found, tolerance: 1e-9 }
+            Difference { key: named(case), change, golden, found, tolerance: 1e-9 }
         };
         let changed = |case: &str, change: ParetoChange| {
             let case = case.to_owned();
@@ -413,7 +396,7 @@ mod tests {
         }
         // Values that agree are those that are in both files and no difference.
         let values = |list: [(&str, f64); 3]| list.map(|(name, value)| (named(name), value)).into();
-        let golden: BTreeMap<String, f64> = values([("same", 1.0), ("moved", 2.0), ("gone", 1.0)]);
+        let golden: BTreeMap<GoldenKey, f64> = values([("same", 1.0), ("moved", 2.0), ("gone", 1.0)]);
         let file = GoldenFile { values: golden, ..GoldenFile::of("t", &[], "a test") };
         let check =
             StudyCheck::of_values("t", &values([("same", 1.0), ("moved", 9.0), ("new", 1.0)]), Ok(file));

@@ -5,7 +5,7 @@ use crate::history::comparison::{Seconds, StudyComparison, Trend};
 use crate::history::timeline::{Step, Timeline};
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
-use crate::report::tables::golden_changes::{input_cells, summary};
+use crate::report::tables::golden_changes::summary;
 use oedometer_soil::wording::{count_of, short};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -54,9 +54,10 @@ fn origins(found: &[&StudyComparison], names: [&str; 2]) -> Vec<String> {
             _ if studies == found.len() => made_by.to_owned(),
             _ => format!("{made_by} ({})", count_of(studies, "study", "studies")),
         });
-        format!("{name} was made by {}.", all.collect::<Vec<_>>().join("; "))
+        let all: Vec<String> = all.collect();
+        (!all.is_empty()).then(|| format!("{name} was made by {}.", all.join("; ")))
     };
-    names.into_iter().enumerate().map(of_state).collect()
+    names.into_iter().enumerate().filter_map(of_state).collect()
 }
 
 /// One row per study, those that are the same among them, for programs.
@@ -134,10 +135,12 @@ fn cases_table(found: &[&StudyComparison]) -> Option<Table> {
 
 /// The inputs that differ; none where none does.
 fn inputs_table(found: &[&StudyComparison]) -> Option<Table> {
-    let rows = found
-        .iter()
-        .flat_map(|one| one.inputs.iter().map(move |input| (one, input)))
-        .map(|(one, input)| [vec![Cell::Code(one.study.clone())], input_cells(input)].concat());
+    let rows =
+        found.iter().flat_map(|one| one.inputs.iter().map(move |input| (one, input))).map(|(one, input)| {
+            let value = |text: &str| if text.is_empty() { Cell::missing("not given") } else { text.into() };
+            let (study, key) = (Cell::Code(one.study.clone()), Cell::Code(input.key.clone()));
+            vec![study, key, value(&input.before), value(&input.after), Cell::Count(input.cases as u64)]
+        });
     let header = "study | input | before | after | > cases";
     Table::of("inputs that differ", columns(header), rows).unless_empty()
 }
@@ -147,7 +150,7 @@ fn moved_table(found: &[&StudyComparison]) -> Option<Table> {
     let rows = found.iter().flat_map(|one| one.groups.iter().map(move |group| (one, group)));
     let rows = rows.map(|(one, group)| {
         let [before, after] = values_of(&group.worst);
-        let (study, value) = (Cell::Code(one.study.clone()), Cell::Code(group.worst.name.clone()));
+        let (study, value) = (Cell::Code(one.study.clone()), Cell::Code(group.worst.key.to_string()));
         vec![study, Cell::Text(summary(group)), value, before, after]
     });
     let header = "study | what | worst value | > before | > after";
@@ -270,6 +273,7 @@ mod tests {
     use super::*;
     use crate::golden::GoldenFile;
     use crate::golden::inputs::InputChange;
+    use crate::golden::measure::key;
     use crate::history::comparison::{Behaviour, OrderChange};
     use crate::history::repository::Commit;
     use crate::history::state::StudyState;
@@ -278,7 +282,7 @@ mod tests {
     fn meshes<const N: usize>(name: &str, states: [[Option<f64>; N]; 2]) -> StudyComparison {
         let state = |errors: [Option<f64>; N]| {
             let measure =
-                |mesh: usize| format!("GIMP cells={} | pressure points l2 terzaghi T_v=1", 4 << mesh);
+                |mesh: usize| key(&format!("GIMP cells={}", 4 << mesh), 1.0, "pressure points terzaghi");
             let value = |(mesh, error): (usize, Option<f64>)| Some((measure(mesh), error?));
             let values = errors.into_iter().enumerate().filter_map(value).collect();
             StudyState::of_golden(GoldenFile { values, ..GoldenFile::of(name, &[], "-") })
@@ -423,7 +427,7 @@ mod tests {
         );
         assert_eq!(told[1], ["gone,GIMP cells=8,"]);
         assert_eq!(told[2], ["timed,porosity,,0.4,3"]);
-        let value = "GIMP cells=8 | pressure points l2 terzaghi T_v=1";
+        let value = "GIMP cells=8 | pressure points terzaghi T_v=1";
         let moved = "\"1 value moved, in 1 case; largest relative change 2.50e-1\"";
         let gone = "\"1 value is no longer measured, in 1 case\"";
         assert_eq!(

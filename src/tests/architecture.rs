@@ -121,8 +121,8 @@ fn an_error_leads_to_what_caused_it() {
     assert_eq!(source, Some(&crate::exact::ExactError::Depth(2.0)));
 
     let folder = tempfile::TempDir::new().expect("a folder");
-    let text = GoldenFile::of("s", &[], "r").to_text().expect("a text") + "a,,b\n";
-    let text = text.replace("case,T_v", "case,T_v,steps");
+    let text = GoldenFile::of("s", &[], "r").to_text().expect("a text") + "a,,,b\n";
+    let text = text.replace("case,hash,T_v", "case,hash,T_v,steps");
     fs::write(folder.path().join("s.csv"), &text).expect("written");
     let unread = GoldenFile::read(folder.path(), "s").expect_err("no number");
     let row = unread.source().and_then(|source| source.downcast_ref::<GoldenTextError>()).expect("its text");

@@ -209,8 +209,9 @@ fn an_explanation_says_what_changed_against_the_golden_values() {
     let options = RunOptions::whole(Tier::Ci, 1);
     let mut golden =
         GoldenFile::of("short", &run_study(&study, &options, None, &|_| {}).records, "for a test");
-    let name = "MPM explicit cells=4 points=2 stable=0.8 | pressure centres l2 terzaghi T_v=0.02";
-    *golden.values.get_mut(name).expect("a value") *= 0.9;
+    let name = "MPM explicit cells=4 points=2 stable=0.8 | pressure centres terzaghi T_v=0.02";
+    let found = golden.values.iter_mut().find(|(key, _)| key.to_string() == name);
+    *found.expect("a value").1 *= 0.9;
     golden.write(&folder.path().join("golden")).expect("written");
     let told = call(folder.path(), &["explain", name, "short.toml"]);
     assert_eq!(told.code, 0, "{}", told.err);
@@ -249,12 +250,12 @@ fn tolerances_from_last_digits_hold_for_another_kernel() {
     let golden = golden.widened_by(spread);
     assert_eq!(compare(&golden, &values_of(&records_by(&study, Kernel::PointWise))), []);
     // And they are narrow: ten times as far in one place is seen there and nowhere else.
-    for name in golden.values.keys() {
+    for key in golden.values.keys() {
         let mut values = golden.values.clone();
-        let value = values.get_mut(name).expect("a value");
-        *value += 10.0 * golden.tolerance(name, value.abs());
-        let places: Vec<String> = compare(&golden, &values).into_iter().map(|one| one.name).collect();
-        assert_eq!(places, std::slice::from_ref(name));
+        let value = values.get_mut(key).expect("a value");
+        *value += 10.0 * golden.tolerance(key, value.abs());
+        let places: Vec<_> = compare(&golden, &values).into_iter().map(|one| one.key).collect();
+        assert_eq!(places, std::slice::from_ref(key));
     }
 }
 

@@ -136,13 +136,13 @@ fn moved_values(right: &StudyState, wrong: &StudyState) -> Vec<Difference> {
 /// become no number, or one again; `None` where none of them is there.
 fn moved_like(right: &StudyState, here: &StudyState, moved: &[Difference]) -> Option<bool> {
     let there =
-        moved.iter().filter_map(|difference| Some((difference, *here.golden.values.get(&difference.name)?)));
+        moved.iter().filter_map(|difference| Some((difference, *here.golden.values.get(&difference.key)?)));
     let has_moved = |(difference, value): (&Difference, f64)| {
         let (Some(before), Some(after)) = (difference.golden, difference.found) else { return false };
         if !(before.is_finite() && value.is_finite()) {
             return before.is_finite() != value.is_finite();
         }
-        let tolerance = right.golden.tolerance(&difference.name, before.abs().max(value.abs()));
+        let tolerance = right.golden.tolerance(&difference.key, before.abs().max(value.abs()));
         after.is_finite() && (value - before).abs() > tolerance && (value > before) == (after > before)
     };
     there.map(has_moved).reduce(|any, one| any || one)
@@ -154,7 +154,7 @@ fn report(trial: &Trial<'_>, right: &StudyState, hash: &str, skipped: &[String])
     let mut text = format!("first bad commit: {} {} {}\n", commit.hash, commit.date, commit.subject);
     if let Ok(values) = trial.values_at(&commit) {
         let differences = compare(&right.golden, &values.golden.values);
-        for group in groups_of(&differences, right.golden.values.keys().map(String::as_str)) {
+        for group in groups_of(&differences, right.golden.values.keys()) {
             writeln!(text, "  {}", sentence(&group))?;
             if let (Some(before), Some(after)) = (group.worst.golden, group.worst.found) {
                 writeln!(text, "    {before:e} -> {after:e}")?;
@@ -279,11 +279,14 @@ fn ended(command: &mut Command) -> Result<(), String> {
 mod tests {
     use super::*;
     use crate::golden::GoldenFile;
+    use crate::golden::measure::{GoldenKey, key};
 
-    const NAME: &str = "a | pressure T_v=0.1";
+    fn error(case: &str) -> GoldenKey {
+        key(case, 0.1, "pressure points terzaghi")
+    }
 
     fn state(value: f64) -> StudyState {
-        let values = [(NAME.to_owned(), value)].into();
+        let values = [(error("a"), value)].into();
         StudyState::of_golden(GoldenFile { values, ..GoldenFile::of("s", &[], "-") })
     }
 
@@ -316,20 +319,19 @@ mod tests {
 
     #[test]
     fn a_commit_is_bad_where_any_of_the_values_that_got_worse_has_moved() {
-        let names = [NAME, "b | pressure T_v=0.1", "a | steps", "b | point updates"];
+        let keys = [error("a"), error("b"), key("a", None, "steps"), key("b", None, "steps")];
         let states = |values: [Option<f64>; 4]| {
-            let values =
-                names.iter().zip(values).filter_map(|(name, value)| Some(((*name).to_owned(), value?)));
+            let values = keys.iter().zip(values).filter_map(|(key, value)| Some((key.clone(), value?)));
             StudyState::of_golden(GoldenFile { values: values.collect(), ..GoldenFile::of("s", &[], "-") })
         };
         let of = |values: [f64; 4]| states(values.map(Some));
         let right = [0.1, 0.2, 100.0, 200.0];
-        let sought = |wrong: [f64; 4]| -> Vec<String> {
-            moved_values(&of(right), &of(wrong)).into_iter().map(|difference| difference.name).collect()
+        let sought = |wrong: [f64; 4]| -> Vec<GoldenKey> {
+            moved_values(&of(right), &of(wrong)).into_iter().map(|difference| difference.key).collect()
         };
         let mut all = sought([0.15, 0.3, 110.0, 210.0]);
         all.sort();
-        assert_eq!(all, [names[0], names[2], names[3], names[1]]);
+        assert_eq!(all, [&keys[2], &keys[0], &keys[3], &keys[1]].map(Clone::clone));
         // What got better is sought only where nothing got worse.
         for (wrong, place) in [
             ([0.15, 0.1, 90.0, 190.0], 0),
@@ -337,7 +339,7 @@ mod tests {
             ([0.05, 0.1, 110.0, 190.0], 2),
             ([0.05, 0.1, 90.0, 210.0], 3),
         ] {
-            assert_eq!(sought(wrong), [names[place]], "{wrong:?}");
+            assert_eq!(sought(wrong), [keys[place].clone()], "{wrong:?}");
         }
         assert_eq!(sought([0.05, 0.1, 90.0, 190.0]).len(), 4);
         let wrong = [0.15, 0.3, 110.0, 210.0];

@@ -13,7 +13,6 @@ use crate::cli::running::{jobs_of, run_ci_tier};
 use crate::cli::study_files::load_sound;
 use crate::cli::trust::{self, TrustArguments};
 use crate::golden::compare::{CaseChange, Difference, DifferenceGroup};
-use crate::golden::inputs::InputChange;
 use crate::golden::{GoldenError, GoldenFile};
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::judge::thinning::thin;
@@ -199,7 +198,7 @@ struct CheckJson<'a> {
     golden_values_that_agree: usize,
     golden_problem: Option<String>,
     proposed_expectations: &'a [String],
-    inputs_that_differ: &'a [InputChange],
+    cases_of_other_inputs: &'a [String],
     groups: &'a [DifferenceGroup],
     differences: &'a [Difference],
     accuracy_and_cost: &'a [CaseChange],
@@ -242,7 +241,7 @@ impl<'a> CheckJson<'a> {
             golden_values_that_agree: check.agreeing,
             golden_problem: check.golden.as_ref().err().map(ToString::to_string),
             proposed_expectations: &check.proposals,
-            inputs_that_differ: &check.inputs,
+            cases_of_other_inputs: &check.other_inputs,
             groups: &check.groups,
             differences: check.differences(),
             accuracy_and_cost: &check.changes,
@@ -340,14 +339,13 @@ mod tests {
         check.agreeing = 17;
         check.proposals = vec!["proposed".to_owned()];
         check.warnings = vec!["warned".to_owned()];
-        let [key, before, after] = ["porosity", "before", "after"].map(str::to_owned);
-        check.inputs = vec![InputChange { key, before, after, cases: 3 }];
+        check.other_inputs = vec!["changed".to_owned()];
         let wanted = serde_json::json!({
             "study": "t", "end": "failed", "judgements": [],
             "failed_cases": [{ "case": "failed", "sentence": "failed is odd" }],
             "unsound_records": [{ "case": "unsound", "sentence": "unsound is odd" }],
             "golden_values_that_agree": 17, "golden_problem": null, "proposed_expectations": ["proposed"],
-            "inputs_that_differ": [{ "key": "porosity", "before": "before", "after": "after", "cases": 3 }],
+            "cases_of_other_inputs": ["changed"],
             "groups": [], "differences": [], "accuracy_and_cost": [], "taken_over": [], "warnings": ["warned"],
             "diagnoses": [],
         });

@@ -11,7 +11,6 @@ use crate::cli::place::DEFAULT_RESULTS;
 use crate::cli::place::{StudyArguments, chosen_as, golden_of};
 use crate::cli::study_files::load_after_run;
 use crate::golden::GoldenError;
-use crate::golden::inputs::CaseInputs;
 use crate::judge::explanation::explain;
 use crate::record::Record;
 use crate::record::store::RecordStore;
@@ -53,7 +52,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let file = chosen_as(&study.name, &chosen).unwrap_or(Path::new(&study.name));
     let record = record_of(study, case, file, &arguments.records)?;
     let golden = match golden_of(arguments.golden.as_deref(), &study.name, &chosen) {
-        Ok(golden) => Some(golden.beside(&CaseInputs::of(study.cases(Tier::Ci))).0),
+        Ok(golden) => Some(golden.beside(&study.cases(Tier::Ci))),
         Err(GoldenError::Missing(_)) => None,
         Err(error) => return Err(Ended::with(Exit::Golden, error.to_string())),
     };

@@ -266,7 +266,8 @@ mod tests {
     #[test]
     fn what_got_worse_is_counted_and_shown_and_nothing_is_said_to_be_nothing() {
         let state = |error: f64| {
-            let values = [("GIMP cells=4 | pressure T_v=1".to_owned(), error)].into();
+            let pressure = crate::golden::measure::key("GIMP cells=4", 1.0, "pressure points terzaghi");
+            let values = [(pressure, error)].into();
             StudyState::of_golden(GoldenFile { values, ..GoldenFile::of("s", &[], "-") })
         };
         let changes = [("worse", 0.3), ("better", 0.1)]

@@ -58,8 +58,8 @@ pub fn annotations_of(checks: &[StudyCheck], file_of: impl Fn(&str) -> Option<St
         for failure in failures_of(check).into_iter().flatten() {
             add("error", failure.line, failure.subject, &failure.sentence);
         }
-        for input in &check.inputs {
-            add("error", 1, "input changed", &input.sentence());
+        if let Some(told) = check.told_inputs() {
+            add("error", 1, "inputs changed", &told);
         }
         match &check.golden {
             Err(_) if check.end() == CheckEnd::HeldBack => {
@@ -143,10 +143,10 @@ pub fn junit(checks: &[StudyCheck]) -> Result<String, SerializeError> {
         }
         let (agrees, sentence) = match &check.golden {
             Ok(differences) => {
-                let inputs = check.inputs.iter().map(|input| format!("input changed: {}", input.sentence()));
+                let inputs = check.told_inputs().into_iter();
                 let mut sentences: Vec<String> = inputs.chain(check.groups.iter().map(sentence)).collect();
                 if !differences.is_empty() {
-                    let worst = differences.iter().take(MOST_NAMED).map(|one| one.name.as_str());
+                    let worst = differences.iter().take(MOST_NAMED).map(|one| one.key.to_string());
                     sentences.push(format!("The worst: {}", worst.collect::<Vec<_>>().join("; ")));
                 }
                 (sentences.is_empty(), sentences.join(". "))
@@ -240,13 +240,13 @@ mod tests {
     use super::*;
     use crate::golden::GoldenError;
     use crate::golden::compare::{Difference, DifferenceGroup};
-    use crate::golden::inputs::InputChange;
+    use crate::golden::measure::key;
     use crate::judge::study_check::CaseNote;
 
     /// Golden values of one kind of change.
     pub(super) fn group(change: Change) -> DifferenceGroup {
-        let name = "MPM | pressure".to_owned();
-        let worst = Difference { name, change, golden: Some(1.0), found: Some(2.0), tolerance: 1e-9 };
+        let key = key("MPM", 0.1, "pressure points terzaghi");
+        let worst = Difference { key, change, golden: Some(1.0), found: Some(2.0), tolerance: 1e-9 };
         let shared = Vec::new();
         DifferenceGroup {
             change,
@@ -259,15 +259,6 @@ mod tests {
         }
     }
 
-    pub(super) fn input_change() -> InputChange {
-        InputChange {
-            key: "material.youngs_modulus".to_owned(),
-            before: "1e6 Pa".to_owned(),
-            after: "1.1e6 Pa".to_owned(),
-            cases: 4,
-        }
-    }
-
     /// A check with failed cases and a warning.
     pub(super) fn check(failures: usize) -> StudyCheck {
         let note =
@@ -276,7 +267,7 @@ mod tests {
             study: "study".to_owned(),
             failed_cases: (0..failures).map(note).collect(),
             unsound: Vec::new(),
-            inputs: Vec::new(),
+            other_inputs: Vec::new(),
             proposals: Vec::new(),
             judgements: Vec::new(),
             golden: Ok(Vec::new()),
@@ -355,13 +346,14 @@ mod tests {
 
     #[test]
     fn a_changed_input_fails_in_every_form_although_no_value_moved() {
-        let changed = StudyCheck { inputs: vec![input_change()], warnings: Vec::new(), ..check(0) };
-        let told = "material.youngs_modulus 1e6 Pa → 1.1e6 Pa in 4 cases";
+        let changed =
+            StudyCheck { other_inputs: vec!["MPM cells=4".to_owned()], warnings: Vec::new(), ..check(0) };
+        let told = "1 case is of other inputs than its golden values, like `MPM cells=4`: `git diff` of the study shows which";
         let lines = annotations_of(std::slice::from_ref(&changed), |_| None);
-        assert_eq!(lines, [format!("::error title=study%3A input changed::{told}")]);
+        assert_eq!(lines, [format!("::error title=study%3A inputs changed::{told}")]);
         let document = junit(&[changed]).unwrap();
         assert!(document.contains(r#"failures="1""#), "{document}");
-        assert!(document.contains("input changed: material.youngs_modulus 1e6 Pa"), "{document}");
+        assert!(document.contains(told), "{document}");
         assert!(junit(&[check(0)]).unwrap().contains(r#"failures="0""#));
     }
 }

@@ -55,7 +55,7 @@ pub fn text_of(check: &StudyCheck, file: Option<&str>, answers: &str) -> Result<
 pub fn verdict_on(check: &StudyCheck) -> String {
     let mood = match check.end() {
         CheckEnd::Pass => Mood::Pass,
-        CheckEnd::Golden if check.groups.is_empty() && check.inputs.is_empty() => Mood::Note,
+        CheckEnd::Golden if check.groups.is_empty() && check.other_inputs.is_empty() => Mood::Note,
         CheckEnd::HeldBack => Mood::Note,
         _ => Mood::Fail,
     };
@@ -134,8 +134,8 @@ pub fn markdown_of(
         for sentence in TakenOver::sentences(&check.taken_over) {
             let _ = write!(text, "\n{sentence}\n");
         }
-        for input in &check.inputs {
-            let _ = write!(text, "\nInput changed: {}\n", input.sentence());
+        if let Some(told) = check.told_inputs() {
+            let _ = write!(text, "\n{}\n", markdown(&told));
         }
         for group in &check.groups {
             let _ = write!(text, "\n{}\n", golden_changes::sentence(group));
@@ -170,10 +170,10 @@ pub fn next_command(check: &StudyCheck, file: Option<&str>) -> Option<String> {
     let explain = |what: &str| Some(format!("oedometer explain \"{what}\" {file}"));
     let [unmet, failed, unsound] = failures_of(check);
     match (check.groups.first(), failed.first().or(unsound.first())) {
-        (Some(group), _) if group.change == Change::Moved => explain(&group.worst.name),
+        (Some(group), _) if group.change == Change::Moved => explain(&group.worst.key.to_string()),
         (_, Some(failure)) => explain(failure.subject),
         _ if !unmet.is_empty() => Some(format!("oedometer report {file}")),
-        (None, _) if check.golden.is_ok() && check.inputs.is_empty() => None,
+        (None, _) if check.golden.is_ok() && check.other_inputs.is_empty() => None,
         // What cannot be read says itself what to do, and what was not run cannot be accepted.
         _ if matches!(&check.golden, Err(error) if !error.is_missing()) || check.held_back > 0 => None,
         _ => Some(format!("oedometer accept {file} --reason \"why the new values are right\"")),
@@ -200,14 +200,13 @@ pub fn all_judgements(checks: &[StudyCheck]) -> Table {
                 Cell::Text(reason),
             ]);
         }
-        let agrees = check.golden.is_ok() && check.differences().is_empty() && check.inputs.is_empty();
+        let agrees = check.golden.is_ok() && check.differences().is_empty() && check.other_inputs.is_empty();
         let (mood, word) = match (agrees, check.end()) {
             (true, _) => (Mood::Pass, "pass"),
             (false, CheckEnd::HeldBack) => (Mood::Note, "not run"),
             (false, _) => (Mood::Fail, "fail"),
         };
-        let inputs = check.inputs.iter().map(|input| format!("input changed: {}", input.sentence()));
-        let reason: Vec<String> = std::iter::once(headline(check)).chain(inputs).collect();
+        let reason: Vec<String> = std::iter::once(headline(check)).chain(check.told_inputs()).collect();
         whole.rows.push(vec![
             check.study.as_str().into(),
             Cell::Verdict(mood, word.to_owned()),
@@ -234,12 +233,11 @@ pub fn why_it_fails(check: &StudyCheck) -> Option<String> {
         |count: usize| if count > 1 { format!(" (and {} more below)", count - 1) } else { String::new() };
     let first =
         failures.first().map(|one| format!("{}: {}{}", one.subject, one.sentence, more(failures.len())));
-    let input = || check.inputs.first().map(|input| format!("input changed: {}", input.sentence()));
     let group = || {
         check.groups.first().map(|group| format!("golden values {}: {}", group.change.name(), summary(group)))
     };
     // That golden values are missing stands in the headline.
-    first.or_else(input).or_else(group)
+    first.or_else(|| check.told_inputs()).or_else(group)
 }
 
 fn headline(check: &StudyCheck) -> String {
@@ -387,10 +385,9 @@ fn text_of_failures(check: &StudyCheck) -> String {
     sections.collect()
 }
 
-/// Inputs that are not those of the golden values.
+/// That inputs are not those of the golden values.
 fn text_of_inputs(check: &StudyCheck) -> String {
-    let inputs = check.inputs.iter().map(|one| wrapped(&one.sentence(), "  ", "    ")).collect();
-    section("inputs that changed since the golden values were taken", inputs)
+    check.told_inputs().map_or(String::new(), |told| wrapped(&told, "  ", "    "))
 }
 
 /// Expectations to paste into the file of a study; the report has those that are only counted.
@@ -453,7 +450,7 @@ fn difference(one: &Difference) -> String {
         (Some(golden), None, _) => format!("was {}", number::exact(golden)),
         (_, found, _) => found.map_or(String::new(), number::exact),
     };
-    item(&one.name, &format!("{}: {how}", one.change.name()))
+    item(&one.key.to_string(), &format!("{}: {how}", one.change.name()))
 }
 
 fn case_change(one: &CaseChange) -> String {
@@ -473,15 +470,16 @@ mod tests {
     use super::*;
     use crate::golden::GoldenError;
     use crate::golden::compare::Change;
+    use crate::golden::measure::key;
     use crate::judge::study_check::CaseNote;
     use crate::render::table::columns;
-    use crate::report::checks::tests::{check, group, input_change};
+    use crate::report::checks::tests::{check, group};
     use oedometer_convergence::ParetoChange;
 
     #[test]
     fn values_of_an_input_that_changed_are_told_by_their_kind_and_hide_nothing_that_moved() {
         let difference = |golden: Option<f64>, found: Option<f64>| Difference {
-            name: "MPM | pressure".to_owned(),
+            key: key("MPM", 0.1, "pressure points terzaghi"),
             change: if golden.is_some() && found.is_some() { Change::Moved } else { Change::Missing },
             golden,
             found,
@@ -545,7 +543,7 @@ mod tests {
     #[test]
     fn a_value_that_moved_is_told_by_how_many_tolerances() {
         let moved = Difference {
-            name: "MPM | pressure".to_owned(),
+            key: key("MPM", 0.1, "pressure points terzaghi"),
             change: Change::Moved,
             golden: Some(0.5),
             found: Some(0.75),
@@ -554,7 +552,8 @@ mod tests {
         let of = |golden: Option<f64>, found: Option<f64>, change: Change| {
             difference(&Difference { change, golden, found, ..moved.clone() }).replace("\n    ", " ")
         };
-        let start = "  MPM | pressure moved: ";
+        let name = "  MPM | pressure points terzaghi T_v=0.1";
+        let start = format!("{name} moved: ");
         let told = of(Some(0.5), Some(0.75), Change::Moved);
         assert_eq!(
             told,
@@ -562,8 +561,8 @@ mod tests {
         );
         let told = of(Some(0.5), Some(1.25), Change::Moved);
         assert_eq!(told, format!("{start}1.25 was 0.5, 2.5 times as large, 12 times its tolerance\n"));
-        assert_eq!(of(Some(0.5), None, Change::Missing), "  MPM | pressure missing: was 0.5\n");
-        assert_eq!(of(None, Some(0.5), Change::Extra), "  MPM | pressure not in the golden: 0.5\n");
+        assert_eq!(of(Some(0.5), None, Change::Missing), format!("{name} missing: was 0.5\n"));
+        assert_eq!(of(None, Some(0.5), Change::Extra), format!("{name} not in the golden: 0.5\n"));
     }
 
     #[test]
@@ -591,9 +590,9 @@ mod tests {
         for (check, word, reason, next) in [
             (check(0), "pass", "0 golden values agree", None),
             (
-                StudyCheck { inputs: vec![input_change()], ..check(0) },
+                StudyCheck { other_inputs: vec!["MPM".to_owned()], ..check(0) },
                 "fail",
-                "agree. input changed: material.youngs_modulus 1e6 Pa → 1.1e6 Pa in 4 cases",
+                "agree. 1 case is of other inputs than its golden values, like `MPM`",
                 Some(accept),
             ),
             (
@@ -608,7 +607,7 @@ mod tests {
                 differing(Change::Moved),
                 "fail",
                 "1 do not",
-                Some("oedometer explain \"MPM | pressure\" s.toml"),
+                Some("oedometer explain \"MPM | pressure points terzaghi T_v=0.1\" s.toml"),
             ),
             (check(2), "pass", "2 cases failed", Some("oedometer explain \"case 0\" s.toml")),
             (

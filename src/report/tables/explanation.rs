@@ -5,18 +5,12 @@ use crate::judge::explanation::{Carrier, Explanation, LevelSeries};
 use crate::record::Record;
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
-use crate::report::tables::golden_changes::{differences_table, input_cells};
+use crate::report::tables::golden_changes::differences_table;
 use crate::report::tables::runs::attached_notes;
 
 /// Places of the errors, levels and changes of a case.
 pub fn tables_of(record: &Record, explanation: &Explanation) -> Vec<Table> {
     let mut tables = Vec::new();
-    if !explanation.inputs.is_empty() {
-        let header = columns("input | golden | now");
-        // The last cell counts cases: this one.
-        let rows = explanation.inputs.iter().map(|input| input_cells(input).into_iter().take(3).collect());
-        tables.push(Table::of("inputs that differ from those of the golden values", header, rows));
-    }
     tables.push(carriers_table(record, explanation));
     if let Some(first) = explanation.carriers.first() {
         tables.extend(explanation.levels.iter().map(|series| levels_table(first, series)));
@@ -27,16 +21,18 @@ pub fn tables_of(record: &Record, explanation: &Explanation) -> Vec<Table> {
     tables
 }
 
-/// One sentence on the golden values of a case.
+/// One sentence on the golden values of a case, and another one where its inputs are not those of then.
 pub fn golden_sentence(explanation: &Explanation) -> String {
-    match (explanation.has_golden, explanation.differences.len(), explanation.agreeing) {
+    let values = match (explanation.has_golden, explanation.differences.len(), explanation.agreeing) {
         (false, ..) => "there are no golden values to compare the case with".to_owned(),
         (true, 0, 0) => "this case has no golden values: it is not in the CI tier".to_owned(),
         (true, 0, agreeing) => format!("all {agreeing} golden values of the case agree"),
         (true, differing, agreeing) => {
             format!("{differing} values differ from the golden ones, {agreeing} agree")
         }
-    }
+    };
+    let inputs = if explanation.has_other_inputs { ". Its inputs are others than theirs" } else { "" };
+    values + inputs
 }
 
 fn carriers_table(record: &Record, explanation: &Explanation) -> Table {
@@ -150,7 +146,7 @@ mod tests {
     fn golden_values_of_a_case_are_counted_and_a_failure_stands_in_the_title() {
         let of = |has_golden: bool, differing: usize, agreeing: usize| {
             let one = Difference {
-                name: "n".to_owned(),
+                key: crate::golden::measure::key("n", None, "steps"),
                 change: Change::Moved,
                 golden: None,
                 found: None,
@@ -168,6 +164,10 @@ mod tests {
         assert_eq!(of(true, 0, 3), "all 3 golden values of the case agree");
         assert_eq!(of(true, 2, 3), "2 values differ from the golden ones, 3 agree");
         assert_eq!(of(true, 2, 0), "2 values differ from the golden ones, 0 agree");
+        let other =
+            Explanation { has_golden: true, agreeing: 3, has_other_inputs: true, ..Explanation::default() };
+        let told = "all 3 golden values of the case agree. Its inputs are others than theirs";
+        assert_eq!(golden_sentence(&other), told);
         let row = |quantity: Quantity| ErrorRow {
             time_factor: 0.5,
             quantity,

@@ -1,7 +1,6 @@
 //! Golden values that changed, in words and as tables, the worst first.
 
 use crate::golden::compare::{CaseChange, Change, Difference, DifferenceGroup};
-use crate::golden::inputs::InputChange;
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
 use oedometer_convergence::ParetoChange;
@@ -47,7 +46,7 @@ pub(crate) fn summary(group: &DifferenceGroup) -> String {
 
 /// The summary with the name of the worst value.
 pub fn sentence(group: &DifferenceGroup) -> String {
-    format!("{}: {}", summary(group), group.worst.name)
+    format!("{}: {}", summary(group), group.worst.key)
 }
 
 /// How accuracy and cost of a case changed together.
@@ -85,13 +84,6 @@ pub(crate) fn changes_table(changes: &[CaseChange]) -> Table {
     )
 }
 
-/// An input that differs: key, values before and after, cases.
-pub(crate) fn input_cells(input: &InputChange) -> Vec<Cell> {
-    let value = |text: &str| if text.is_empty() { Cell::missing("not given") } else { text.into() };
-    let key = Cell::Code(input.key.clone());
-    vec![key, value(&input.before), value(&input.after), Cell::Count(input.cases as u64)]
-}
-
 /// Values that differ from their golden ones.
 pub fn differences_table(differences: &[Difference]) -> Table {
     let value =
@@ -103,7 +95,7 @@ pub fn differences_table(differences: &[Difference]) -> Table {
         };
         vec![
             one.change.name().into(),
-            one.name.as_str().into(),
+            one.key.to_string().into(),
             value(one.golden),
             value(one.found),
             change,
@@ -122,6 +114,7 @@ pub fn differences_table(differences: &[Difference]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::golden::measure::key;
 
     #[test]
     fn every_kind_of_change_has_its_sentence_of_one_value_and_of_several() {
@@ -131,11 +124,11 @@ mod tests {
                 values,
                 cases: values.min(2),
                 shared_by_cases: vec!["MPM".to_owned(), "cells=8".to_owned()],
-                shared_by_measures: vec!["l2".to_owned()],
-                worst: Difference { name: "n | steps".to_owned(), change, golden, found, tolerance: 1e-9 },
+                shared_by_measures: vec!["points".to_owned()],
+                worst: Difference { key: key("n", None, "steps"), change, golden, found, tolerance: 1e-9 },
                 place: (values == 3).then(|| "most of it is below".to_owned()),
             };
-        let shared = ", all with `MPM`, `cells=8`, all of `l2`";
+        let shared = ", all with `MPM`, `cells=8`, all of `points`";
         for (change, one, several) in [
             (Change::Moved, "1 value moved, in 1 case", "moved"),
             (Change::Missing, "1 value is no longer measured, in 1 case", "are no longer measured"),
@@ -188,7 +181,7 @@ mod tests {
         }
         let moved = |values: usize| {
             let one = |number: usize| Difference {
-                name: format!("{number}"),
+                key: key(&number.to_string(), None, "steps"),
                 change: Change::Moved,
                 golden: Some(1.0),
                 found: Some(2.0),
@@ -197,7 +190,7 @@ mod tests {
             let table = differences_table(&(0..values).map(one).collect::<Vec<_>>());
             (table.rows.len(), table.rows.last().map(|row| row[1].show()), table.notes)
         };
-        assert_eq!(moved(40), (40, Some("39".to_owned()), Vec::new()));
-        assert_eq!(moved(43), (40, Some("39".to_owned()), vec!["and 3 more".to_owned()]));
+        assert_eq!(moved(40), (40, Some("39 | steps".to_owned()), Vec::new()));
+        assert_eq!(moved(43), (40, Some("39 | steps".to_owned()), vec!["and 3 more".to_owned()]));
     }
 }
