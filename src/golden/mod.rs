@@ -161,14 +161,23 @@ impl GoldenFile {
     pub fn beside(mut self, cases: &[&Case]) -> (Self, Vec<String>) {
         let present: BTreeMap<Arc<str>, &Case> =
             cases.iter().map(|case| (case.label().into(), *case)).collect();
-        let mut new: Vec<(&Arc<str>, &&Case)> =
-            present.iter().filter(|(label, _)| !self.cases.contains_key(*label)).collect();
-        let mut renamed: BTreeMap<Arc<str>, Arc<str>> = BTreeMap::new();
-        for (label, mark) in self.cases.iter().filter(|(label, _)| !present.contains_key(*label)) {
-            if let Some(place) = new.iter().position(|(_, case)| mark.is_of(case) == Some(true)) {
-                renamed.insert(label.clone(), new.remove(place).0.clone());
-            }
-        }
+        let is_new = |(label, _): &(&Arc<str>, &&Case)| !self.cases.contains_key(*label);
+        let new = || present.iter().filter(is_new).map(|(label, case)| (label.clone(), *case));
+        let gone: Vec<_> = self.cases.iter().filter(|(label, _)| !present.contains_key(*label)).collect();
+        let knows_inputs = gone.iter().any(|(_, mark)| matches!(mark, CaseMark::Inputs(_)));
+        let mut by_hash: BTreeMap<String, Arc<str>> =
+            new().map(|(label, case)| (case.hash(), label)).collect();
+        let mut by_inputs: BTreeMap<Inputs, Arc<str>> =
+            new().filter(|_| knows_inputs).map(|(label, case)| (older::inputs_of(case), label)).collect();
+        let partner = |(label, mark): (&Arc<str>, &CaseMark)| {
+            let now = match mark {
+                CaseMark::Hash(hash) => by_hash.remove(hash),
+                CaseMark::Inputs(inputs) => by_inputs.remove(inputs),
+                CaseMark::Unknown => None,
+            };
+            Some((label.clone(), now?))
+        };
+        let renamed: BTreeMap<Arc<str>, Arc<str>> = gone.into_iter().filter_map(partner).collect();
         let is_other = |(label, mark): &(&Arc<str>, &CaseMark)| {
             present.get(*label).is_some_and(|case| mark.is_of(case) == Some(false))
         };
