@@ -49,6 +49,9 @@ impl Column {
     }
 }
 
+/// A row of the table: its case and output.
+type Row<'a> = (&'a Arc<str>, Option<TimeFactor>);
+
 /// The shortest decimal that reads back as the same number.
 fn decimal(value: f64) -> String {
     let text = format!("{value:?}");
@@ -76,7 +79,7 @@ impl GoldenFile {
             (&key.case, key.time, Column::Spreads(key.of), spread)
         });
         let mut columns = BTreeSet::new();
-        let mut rows: BTreeMap<(&Arc<str>, Option<TimeFactor>), BTreeMap<Column, f64>> =
+        let mut rows: BTreeMap<Row<'_>, BTreeMap<Column, f64>> =
             self.cases.keys().map(|case| ((case, None), BTreeMap::new())).collect();
         for (case, time, column, value) in values.chain(spreads) {
             columns.insert(column.clone());

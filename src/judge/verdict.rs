@@ -463,7 +463,7 @@ mod tests {
         assert!(told.len() == 1 && told[0].contains("MPM: 1 case was skipped"), "{told:?}");
         // Golden values of others stay, however alike their labels are.
         let [skipped, run] = [0, 1].map(|place: usize| records[place].case.label());
-        let name = |label: &str| format!("{label} | steps");
+        let name = |label: &str| crate::golden::measure::key(label, None, "steps");
         let kept = [name(&run), name(&format!("{skipped}5")), name(&format!("VP, {skipped}"))];
         let mut golden = GoldenFile::of("t", &[], "test");
         golden.values = kept.iter().chain([&name(&skipped)]).map(|name| (name.clone(), 1.0)).collect();

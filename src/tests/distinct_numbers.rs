@@ -355,7 +355,7 @@ fn times_of_an_attached_run_are_the_least_and_the_median_and_the_processor_s_own
 #[test]
 fn a_golden_value_that_moved_stands_with_both_values_and_what_it_grew_by() {
     let difference = |golden: Option<f64>, found: Option<f64>| Difference {
-        name: "its name".to_owned(),
+        key: crate::golden::measure::key("its case", None, "steps"),
         change: Change::Moved,
         golden,
         found,
@@ -364,7 +364,7 @@ fn a_golden_value_that_moved_stands_with_both_values_and_what_it_grew_by() {
     let table = golden_changes::differences_table(&[difference(Some(0.5), Some(0.25))]);
     for (header, cell) in [
         ("change", Cell::Text("moved".to_owned())),
-        ("value", Cell::Text("its name".to_owned())),
+        ("value", Cell::Text("its case | steps".to_owned())),
         ("golden", Cell::Text("0.5".to_owned())),
         ("now", Cell::Text("0.25".to_owned())),
         ("difference", Cell::Error(-0.25)),
