@@ -275,9 +275,8 @@ fn two_commands_of_an_attached_solver_are_compared_in_rounds() {
     let found: serde_json::Value = serde_json::from_str(&worse.out).expect("JSON");
     assert_eq!((&found[0]["accuracy"], &found[0]["cost"]), (&"regressed".into(), &"same".into()));
     let orders = found[0]["orders"].as_array().expect("orders that changed");
-    let of_pressure = |one: &&serde_json::Value| {
-        one["series"].as_str().is_some_and(|name| name.contains("pressure nodes"))
-    };
+    let of_pressure =
+        |one: &&serde_json::Value| one["series"].as_str().is_some_and(|name| name.contains("pressure nodes"));
     let pressure = orders.iter().find(of_pressure).expect("the order of the pressure");
     let [before, after] = ["before", "after"].map(|side| pressure[side]["order"].as_f64());
     assert!((before.expect("an order") - 2.0).abs() < 0.1, "{found:#}");
