@@ -325,7 +325,7 @@ mod tests {
     fn sound() -> GoldenFile {
         let values = BTreeMap::from([(error(4, "points"), 0.02)]);
         let cases = [("MPM cells=4".into(), CaseMark::Unknown)].into();
-        GoldenFile { values, cases, ..GoldenFile::of("study", &[], "a reason") }
+        GoldenFile { cases, values, ..GoldenFile::of("study", &[], "a reason") }
             .widened_by(BTreeMap::from([(group(4), 1e-8)]))
     }
 
