@@ -180,12 +180,12 @@ fn critical_step_found(within: f64, record: &Record) -> Check {
         })
         .collect();
     let pass = deviation.abs() <= within && found.probes_agree();
-    let told = format!(
-        "observed {:+.2} % off the predicted {:.4e} s, {} % allowed;",
-        100.0 * deviation,
-        found.predicted,
-        100.0 * within
-    );
+    let off = match found.within() {
+        Some(resolution) => format!("within {:.2} % of", 100.0 * resolution),
+        None => format!("{:+.2} % off", 100.0 * deviation),
+    };
+    let told =
+        format!("observed {off} the predicted {:.4e} s, {} % allowed;", found.predicted, 100.0 * within);
     Check::compared(NAME, pass, deviation, &told, ["with", "with"], &probes.join(", "))
 }
 

@@ -112,7 +112,8 @@ fn demand_of(path: &Path<'_>, measure: &Measure, with_order: bool) -> Option<(Me
 fn selection_of(study: &Study, path: &Path<'_>) -> Option<Vec<(&'static Key, Value)>> {
     let case = &path.records[0].case;
     let differs = |key: &Key| study.planned.iter().any(|other| key.get(&other.case) != key.get(case));
-    let keys = KEYS.iter().filter(|key| key.tables.contains(&"sweep") && key.name != path.axis.name());
+    let is_own = |key: &Key| key.tables.contains(&"sweep") && key.in_place_of.is_empty();
+    let keys = KEYS.iter().filter(|key| is_own(key) && key.name != path.axis.name());
     let named = keys.filter(|key| key.name == "method" || key.counts_for(case) && differs(key));
     named.map(|key| toml_of(key.get(case)).map(|_| (key, key.get(case)))).collect()
 }

@@ -14,6 +14,10 @@ use oedometer_soil::wording::{short, typed};
 const POINTS_MISSING: &str = "points missing at the start";
 /// The check of the growth that the eigenvalues of the step promise.
 const GROWN_MODE: &str = "growth of a mode until the last output, by the eigenvalues of the step";
+/// The check of steps beyond the critical one, shown where it fails.
+const TOO_FEW_STEPS: &str = "largest step (too few to show it), over the predicted critical one";
+/// Share of the critical step beyond which a run is unstable: the prediction is within 2 % of what is observed.
+const MOST_OF_THE_LIMIT: f64 = 1.05;
 /// Round-off of sums of numbers of similar size.
 const ROUND_OFF: f64 = 1e-9;
 /// Unbalanced force over the load that a direct solver may leave.
@@ -114,6 +118,12 @@ pub fn start_checks(record: &Record) -> Vec<RecordCheck> {
             unbalanced_bound(record),
         ),
     ];
+    let over = record.groups.step_over_limit;
+    let settings = &record.case.settings;
+    let is_predicted = record.case.is_explicit() && !settings.affine && !settings.stress_slopes;
+    if is_predicted && over > MOST_OF_THE_LIMIT {
+        checks.push(RecordCheck::of(TOO_FEW_STEPS, over, 1.0));
+    }
     // Where nothing grows there is nothing to show.
     let growth = record.step_sizes.growth;
     checks.extend(growth.map(|growth| RecordCheck::of(GROWN_MODE, growth, MOST_GROWTH)));

@@ -70,7 +70,8 @@ impl Assignments {
         let inputs = kind.inputs(has_weight);
         for typed in &self.assignments {
             let (key, _) = assignment(typed)?;
-            let is_read = column_key(&key).is_some_and(|key| inputs.contains(&key.name))
+            let is_read = column_key(&key)
+                .is_some_and(|key| inputs.contains(&key.name) || inputs.contains(&key.in_place_of))
                 || (key == "column.soils" && inputs.contains(&"soils"))
                 || key == "column.strain";
             if !is_read {
@@ -129,6 +130,7 @@ fn why_ignored(kind: ReferenceKind, key: &str) -> &'static str {
         ("column.loading_time", ReferenceKind::Shelf(_)) => "its load acts at once, or in waves",
         ("column.loading_time", _) => "its load acts at once",
         ("column.self_weight", _) => "it has no weight",
+        ("column.drainage", _) => "its base is impermeable",
         ("material.grain_density", _) => "it has no inertia, and no weight without `column.self_weight=true`",
         ("output.time_factors", _) => "`--time-factor` has the times",
         ("output.times", _) => "`--time` has them",

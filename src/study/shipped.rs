@@ -11,13 +11,13 @@ macro_rules! shipped {
 
 /// The names in the order of the report, and the texts.
 const SHIPPED: &[(&str, &str)] = shipped! {
-    "terzaghi-mesh" "terzaghi-floor" "terzaghi-points" "terzaghi-time-step" "step-control"
+    "terzaghi-mesh" "terzaghi-both-ends" "terzaghi-floor" "terzaghi-points" "terzaghi-time-step" "step-control"
     "value-uncertainty" "terzaghi-methods" "terzaghi-integrators" "any-soil" "any-column" "jittered-points" "work-precision" "terzaghi-moving"
     "single-mode" "dynamic-column" "dynamic-ramp" "dynamic-growth" "dynamic-mode" "standing-wave-mesh"
     "standing-wave-step" "column-in-the-plane" "column-in-the-plane-steps" "layer-locking" "layer-mesh"
     "layer-smooth" "pressure-projection" "mandel" "self-weight" "self-weight-large" "self-weight-options" "self-weight-plane"
     "self-weight-waves" "at-rest"
-    "layered-conductivity" "layered-stiffness" "layered-node" "layered-water" "yield-front-moduli" "yield-front-integrators" "sealed-element" "footing"
+    "layered-conductivity" "layered-stiffness" "layered-node" "layered-both-ends" "layered-water" "yield-front-moduli" "yield-front-integrators" "sealed-element" "footing"
     "stability-conductivity" "stability-stiffness" "stability-porosity" "stability-points"
     "stability-offset" "stability-flip" "stability-slow-growth" "hard-undrained" "hard-stiff-water"
     "hard-tiny-porosity" "hard-large-porosity" "hard-one-point" "hard-faces" "hard-jitter" "hard-empty-top"
@@ -25,7 +25,7 @@ const SHIPPED: &[(&str, &str)] = shipped! {
     "large-strain-explicit" "large-strain-implicit" "large-strain-integrators" "large-strain-models"
     "large-strain-points" "large-strain-crossing" "large-strain-plane" "large-strain-small"
     "large-strain-half" "large-strain-start" "large-strain-chord" "large-strain-chord-plane" "large-strain-ramp" "large-strain-ramp-half"
-    "large-strain-ramp-steps" "large-strain-limit" "large-strain-layers" "nodal-pressure" "large-strain-nodal" "double-point"
+    "large-strain-ramp-steps" "large-strain-limit" "large-strain-both-ends" "large-strain-layers" "nodal-pressure" "large-strain-nodal" "double-point"
     "double-point-large-strain" "double-point-plane" "stability-double-point" "manufactured-box" "manufactured-shear"
     "manufactured-vortex" "map"
     "race-column-usual" "race-points-jitter-30" "race-points-offset" "race-points-one"

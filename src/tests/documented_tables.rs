@@ -88,6 +88,7 @@ fn inputs(table: &str) -> String {
                 (_, "frequency") => "π/2".to_owned(),
                 _ => value_of(key, &seed),
             },
+            _ if !key.in_place_of.is_empty() => "none".to_owned(),
             _ => value_of(key, &seed),
         };
         let values = format!("{} {}", values(key), key.unit);

@@ -12,6 +12,7 @@ mod numbers;
 mod options;
 mod refused;
 mod relations;
+mod shares;
 mod solved;
 
 use crate::laws::{Violation, violations_of};
@@ -142,4 +143,15 @@ fn halved_steps_at_large_strain_do_not_leave_the_exact_solution_in_silence() {
         Outcome { options, kind, violations }
     });
     judge("halved steps", seed, &outcomes);
+}
+
+#[test]
+fn shares_of_the_critical_step_run_below_it_and_not_above() {
+    let seed = asked("OEDOMETER_RANDOM_SEED", SEED);
+    let outcomes = swept(asked("OEDOMETER_RANDOM_CASES", CASES) / 10, |index| {
+        let options = shares::drawn(seed, index);
+        let (kind, violations) = shares::held(&options);
+        Outcome { options, kind, violations }
+    });
+    judge("shares of the critical step", seed, &outcomes);
 }

@@ -4,7 +4,7 @@
 //! selections of expectations, the JSON Schema and the columns of tables follow from it.
 
 use crate::{Case, SolverName};
-use oedometer_exact::parameters::Base;
+use oedometer_exact::parameters::{Base, Drainage};
 use oedometer_problem::integrator::{Formulation, IntegratorKind};
 use oedometer_problem::settings::Drag;
 use oedometer_problem::settings::Scheme;
@@ -32,6 +32,8 @@ pub struct Key {
     pub unit: &'static str,
     /// What it means.
     pub meaning: &'static str,
+    /// The key that it gives in other words and stands in the place of, empty of most: a case has the other.
+    pub in_place_of: &'static str,
     get: fn(&Case) -> Value,
     set: fn(&mut Case, Value),
 }
@@ -119,10 +121,23 @@ macro_rules! word_fields {
     )+ };
 }
 
-word_fields!(Base, ConductivityMean, Continuity, Drag, Formulation, IntegratorKind, Law, Scheme, Undrained);
+word_fields!(
+    Base,
+    ConductivityMean,
+    Continuity,
+    Drag,
+    Drainage,
+    Formulation,
+    IntegratorKind,
+    Law,
+    Scheme,
+    Undrained
+);
 
 /// Reads or writes the field of a case that a key stands for: a path of fields, or a field of one shape of the body.
 macro_rules! field {
+    (get $case:ident, by $get:ident $set:ident) => { Value::Number($get($case)) };
+    (set $case:ident, $value:ident, by $get:ident $set:ident) => { $set($case, $value) };
     (get $case:ident, shape $shape:ident $first:ident $(. $rest:ident)*) => {
         match $case.column.shape {
             Shape::$shape { $first, .. } => $first $(. $rest)*.value(),
@@ -139,7 +154,7 @@ macro_rules! field {
 }
 
 macro_rules! keys {
-    ($($name:ident in $tables:expr, $kind:expr, $unit:literal, [$($field:tt)+] $(, then $then:expr)?;
+    ($($name:ident in $tables:expr, $kind:expr, $unit:literal, [$($field:tt)+] $(, for $other:literal)? $(, then $then:expr)?;
        $meaning:literal)+) => {
         /// Every input of a case that a study file names; those of a sweep in the order in which it turns them,
         /// the slowest first.
@@ -149,6 +164,7 @@ macro_rules! keys {
             kind: $kind,
             unit: $unit,
             meaning: $meaning,
+            in_place_of: [$($other,)? ""][0],
             get: |case| field!(get case, $($field)+),
             set: |case, value| {
                 if let Some(value) = Field::from_value(value) {
@@ -161,6 +177,32 @@ macro_rules! keys {
 }
 
 const POSITIVE: Kind = Kind::Number(Range::Positive);
+
+/// What follows from inputs, to as many digits as one types: those of round-off would make another value of it.
+fn derived(value: f64) -> f64 {
+    format!("{value:.13e}").parse().unwrap_or(value)
+}
+
+fn oedometric_modulus(case: &Case) -> f64 {
+    derived(case.material.oedometric_modulus())
+}
+
+/// Young's modulus of an oedometric one, by Poisson's ratio of the case.
+fn set_oedometric_modulus(case: &mut Case, modulus: f64) {
+    let ratio = case.material.poissons_ratio;
+    case.material.youngs_modulus = modulus * ((1.0 + ratio) * (1.0 - 2.0 * ratio) / (1.0 - ratio));
+}
+
+fn coefficient_of_consolidation(case: &Case) -> f64 {
+    derived(case.material.coefficient_of_consolidation())
+}
+
+/// Conductivity of a coefficient of consolidation, by modulus and unit weight of the case.
+fn set_coefficient_of_consolidation(case: &mut Case, coefficient: f64) {
+    let soil = &mut case.material;
+    soil.hydraulic_conductivity = coefficient * soil.unit_weight_of_water() / soil.oedometric_modulus();
+}
+
 const SHIFT: Kind = Kind::Number(Range::Within(
     -0.5,
     0.5,
@@ -228,6 +270,12 @@ keys! {
     hydraulic_conductivity in &["sweep", "material"], POSITIVE, "m/s", [material.hydraulic_conductivity];
         "Initial hydraulic conductivity"
     gravity in &["sweep", "material"], POSITIVE, "m/s²", [material.gravity]; "Gravity, in the drag and in `column.self_weight`"
+    oedometric_modulus in &["sweep", "material"], POSITIVE, "Pa", [by oedometric_modulus set_oedometric_modulus],
+        for "youngs_modulus";
+        "Oedometric modulus E_oed = 1/m_v, in place of `youngs_modulus`: E = E_oed(1 + ν)(1 − 2ν)/(1 − ν)"
+    coefficient_of_consolidation in &["sweep", "material"], POSITIVE, "m²/s",
+        [by coefficient_of_consolidation set_coefficient_of_consolidation], for "hydraulic_conductivity";
+        "Coefficient of consolidation c_v, in place of `hydraulic_conductivity`: k = c_v γ_w/E_oed"
     continuity in &["sweep", "material"], Kind::Word(&Continuity::NAMES), "", [material.continuity];
         "Form of the water's continuity"
     conductivity_mean in &["sweep", "material"], Kind::Word(&ConductivityMean::NAMES), "", [material.conductivity_mean];
@@ -281,6 +329,8 @@ keys! {
         "Amplitude P of the pressure; also the scale of absolute errors of pressure and stress"
     self_weight in &["column"], Kind::Flag, "", [column.self_weight];
         "Skeleton and water have weight; pressures are in excess of the hydrostatic one"
+    drainage in &["column"], Kind::Word(&Drainage::NAMES), "", [column.drainage];
+        "Drained ends: the top, or top and base; then T_v = c_v t/(H/2)²"
 }
 
 impl Key {
@@ -384,8 +434,13 @@ mod tests {
             assert_ne!(case.hash(), seed.hash(), "{key:?}");
             let same = |other: &&Key| other.get(&case) != other.get(&seed);
             let changed: Vec<&str> = KEYS.iter().filter(same).map(|other| other.name).collect();
+            let derived = ["oedometric_modulus", "coefficient_of_consolidation"];
             let expected: &[&str] = match key.name {
                 "integrator" => &["integrator", "time_step"],
+                "youngs_modulus" | "poissons_ratio" => &[key.name, derived[0], derived[1]],
+                "water_density" | "hydraulic_conductivity" | "gravity" => &[key.name, derived[1]],
+                "oedometric_modulus" => &["youngs_modulus", derived[0], derived[1]],
+                "coefficient_of_consolidation" => &["hydraulic_conductivity", derived[1]],
                 name => &[name],
             };
             assert_eq!(changed, expected, "{key:?}");
@@ -402,7 +457,32 @@ mod tests {
         // Of the geometry all but what changes the references or the kind of the problem.
         let stays: Vec<&str> =
             KEYS.iter().filter(|key| !key.tables.contains(&"sweep")).map(|key| key.name).collect();
-        assert_eq!(stays, ["dimensions", "loading_time", "self_weight"]);
+        assert_eq!(stays, ["dimensions", "loading_time", "self_weight", "drainage"]);
+    }
+
+    #[test]
+    fn an_oedometer_s_inputs_are_those_that_they_stand_for_whatever_comes_first_in_a_file() {
+        let set = |given: &[(&str, f64)]| {
+            let mut case = Case::seed(Task::Solve, &TERZAGHI);
+            // In the order of the table, as studies set them.
+            for key in Key::in_table("material") {
+                let typed = given.iter().find(|(name, _)| *name == key.name);
+                typed.into_iter().for_each(|(_, value)| key.set(&mut case, Value::Number(*value)));
+            }
+            case
+        };
+        let typed =
+            [("coefficient_of_consolidation", 2e-7), ("oedometric_modulus", 5e6), ("poissons_ratio", 0.3)];
+        let case = set(&typed);
+        let soil = &case.material;
+        assert!((soil.oedometric_modulus() / 5e6 - 1.0).abs() < 1e-14);
+        assert!((soil.coefficient_of_consolidation() / 2e-7 - 1.0).abs() < 1e-14);
+        assert!((soil.youngs_modulus / (5e6 * 1.3 * 0.4 / 0.7) - 1.0).abs() < 1e-14);
+        // Read back they are the numbers that were typed.
+        for (name, value) in typed {
+            let key = Key::named(name, "sweep").expect("a key");
+            assert_eq!(key.get(&case), Value::Number(value), "{name}");
+        }
     }
 
     #[test]

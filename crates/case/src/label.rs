@@ -4,6 +4,7 @@ use crate::{Case, Key, Task, USUAL_POINTS, Value};
 use oedometer_problem::arrangement::Arrangement;
 use oedometer_problem::time_step::TimeStep;
 use oedometer_scenes::scene::Body;
+use oedometer_soil::base::Drainage;
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::material::Material;
@@ -23,6 +24,7 @@ impl Case {
             (settings.affine, "APIC".to_owned()),
             (settings.stress_slopes, "stress slopes".to_owned()),
             (self.column.dimensions == 2 && self.scene.body == Body::Column, "two dimensions".to_owned()),
+            (self.column.drainage == Drainage::Both, "drained at both ends".to_owned()),
             (self.column.self_weight && !(self.scene.column)().self_weight, "own weight".to_owned()),
             (self.material.law != (self.scene.soil)().law, format!("{} law", self.material.law.name())),
             (self.material.continuity != Continuity::Conservative, "porosity gradient dropped".to_owned()),

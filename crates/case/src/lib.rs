@@ -403,7 +403,7 @@ mod tests {
             Shape::Square { motion, pressure: 1.0 }
         }
         let mut hashes = vec![seed().hash()];
-        let changes: [fn(&mut Case); 50] = [
+        let changes: [fn(&mut Case); 51] = [
             |case| case.task = Task::Stability,
             |case| case.scene = &XIE_LEO,
             |case| case.column.height = 2.0,
@@ -413,6 +413,7 @@ mod tests {
             |case| *case.column = Column::layer(),
             |case| case.column.loading_time = 2.0,
             |case| case.column.self_weight = true,
+            |case| case.column.drainage = oedometer_soil::base::Drainage::Both,
             |case| case.column.shape = square(|motion| motion.amplitude_x = 0.1),
             |case| case.column.shape = square(|motion| motion.amplitude_y = 0.1),
             |case| case.column.shape = square(|motion| motion.amplitude = 0.1),

@@ -7,6 +7,7 @@ use oedometer_problem::time_step::TimeStep;
 use oedometer_scenes::Scene;
 use oedometer_scenes::limit::{Limit, Setup};
 use oedometer_scenes::scene::{Body, LoadKind, Question};
+use oedometer_soil::base::Drainage;
 use oedometer_soil::conductivity::ConductivityMean;
 
 /// Why a case cannot be.
@@ -208,6 +209,11 @@ static TWO_SETS: &[Missed] = &[
         "leave `self_weight` out, or take `sets = 1`",
     ),
     (
+        |_, it| it.column.drainage == Drainage::Both,
+        "water points leave through the surface alone",
+        "leave `drainage` out, or take `sets = 1`",
+    ),
+    (
         |_, it| it.soil.conductivity_mean == ConductivityMean::Chord,
         "the chord mean is taken over points that carry both phases",
         "take `conductivity_mean = \"points\"`, or `sets = 1`",
@@ -302,6 +308,7 @@ mod tests {
 26 plate_width: the layer ends under the footing: half of the footing lies on it: make `length` more than half of `plate_width`: 2.5 times `plate_width` is enough
 28 method: the composite gradient between domain ends has no volume of its own: total stress needs one: take another method, or `undrained = "two-phase"`
 31 integrator: the critical step is searched with explicit steps: take `integrator = ["explicit"]`, or leave the key out
+32 sets: water points leave through the surface alone: leave `drainage` out, or take `sets = 1`
 "#;
 
     #[test]
@@ -321,7 +328,7 @@ mod tests {
         };
         let two_phase: Change = |case| case.column.footing.undrained = Undrained::TwoPhase;
         let unequal: Change = |case| (case.column.points.alternating, case.column.dimensions) = (true, 2);
-        let table: [(&'static Scene, &str, Change); 32] = [
+        let table: [(&'static Scene, &str, Change); 33] = [
             (&TERZAGHI, "GIMP", attached),
             (&XIE_LEO, "GIMP", affine),
             (&XIE_LEO, "GIMP", slopes),
@@ -356,6 +363,9 @@ mod tests {
             (&TERZAGHI, "GIMP", |case| {
                 implicitly(case, QuasiStatic);
                 case.task = Task::Stability;
+            }),
+            (&XIE_LEO, "GIMP", |case| {
+                (case.column.points.sets, case.column.drainage) = (2, Drainage::Both);
             }),
         ];
         let mut listed = "\n".to_owned();

@@ -134,6 +134,11 @@ pub enum ExactError {
     /// Layers of soil where the solution has none.
     #[error("a column of layers {0}")]
     Layers(&'static str),
+    /// A drained base where the solution's is impermeable.
+    #[error(
+        "the base of `{0}` is impermeable: a column drained at both ends belongs to `terzaghi`, `xie-leo` and `layered`"
+    )]
+    Drainage(&'static str),
     /// Reloading softer than first loading.
     #[error(
         "the modulus of reloading, {reload} Pa, is below that of first loading, {virgin} Pa: a soil that remembers is \

@@ -22,6 +22,8 @@ pub(crate) const BIOT_KEYS: &[&str] =
     &["porosity", "water_bulk_modulus", "biot_coefficient", "grain_bulk_modulus"];
 /// The law; scenes whose solution holds for a single law accept no other.
 pub(crate) const LAW_KEY: &[&str] = &["law"];
+/// Which ends let the water out.
+pub(crate) const DRAINAGE_KEY: &[&str] = &["drainage"];
 /// Whether skeleton and water have weight.
 pub(crate) const WEIGHT_KEY: &[&str] = &["self_weight"];
 /// Parameters of the stresses due to self-weight.

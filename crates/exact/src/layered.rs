@@ -1,4 +1,4 @@
-//! Consolidation of a column of layers: small strain, compressible water, drained top, impermeable base.
+//! Consolidation of a column of layers: small strain, compressible water, drained top, base impermeable or drained.
 //!
 //! With the storage `S = 1/E_oed + n/K_w` and the mobility `κ = k/γ_w` of each layer,
 //!
@@ -15,16 +15,16 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use nalgebra::Complex;
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, held_within, normal, positive};
-use crate::inputs::{COLUMN_KEYS, LAW_KEY, WATER_KEYS};
+use crate::inputs::{COLUMN_KEYS, DRAINAGE_KEY, LAW_KEY, WATER_KEYS};
 use crate::numerics::bisected;
-use crate::parameters::ColumnParameters;
+use crate::parameters::{ColumnParameters, Drainage};
 use crate::solution::{Accuracy, FieldValues, Solution};
 use crate::talbot::{NODES, talbot_contour};
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 
 /// Study keys that the solution reads.
-pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, &["soils"]];
+pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, DRAINAGE_KEY, WATER_KEYS, LAW_KEY, &["soils"]];
 
 /// Modes beyond which the transform takes over.
 const MOST_MODES: usize = 1000;
@@ -89,6 +89,7 @@ pub struct LayeredColumn {
     layers: Vec<Layer>,
     height: f64,
     load: f64,
+    drainage: Drainage,
     modes: Vec<Mode>,
     /// Seconds of a unit of the time factor, where the column has one.
     seconds: f64,
@@ -113,14 +114,17 @@ impl LayeredColumn {
         if layers.is_empty() {
             layers.push((height, parameters.soil));
         }
-        Ok(Self { seconds: parameters.time(1.0), ..Self::new(parameters.load, &layers)? })
+        Ok(Self {
+            seconds: parameters.time(1.0),
+            ..Self::new(parameters.load, &layers, parameters.drainage)?
+        })
     }
 
-    /// The column of `layers`, thickness in m and soil of each from the base up, under `load` Pa.
+    /// The column of `layers`, thickness in m and soil of each from the base up, under `load` Pa, drained at these ends.
     ///
     /// # Errors
     /// When there is no layer, or a thickness, the load or a soil is impossible.
-    pub fn new(load: f64, layers: &[(f64, Material)]) -> Result<Self, ExactError> {
+    pub fn new(load: f64, layers: &[(f64, Material)], drainage: Drainage) -> Result<Self, ExactError> {
         let mut bottom = 0.0;
         let mut stack = Vec::with_capacity(layers.len());
         for &(thickness, soil) in layers {
@@ -142,6 +146,7 @@ impl LayeredColumn {
             layers: stack,
             height: positive("height", bottom)?,
             load: normal("load", load)?,
+            drainage,
             modes: Vec::new(),
             seconds: 1.0,
         };
@@ -245,10 +250,11 @@ impl LayeredColumn {
         4.0 * f64::EPSILON * self.modes[..terms].iter().enumerate().map(of_mode).sum::<f64>()
     }
 
-    /// Phase of the wave of `√λ = root` at the top, and amplitude and phase at each bottom; the base's is 1 and 0.
+    /// Phase of the wave of `√λ = root` at the top, and amplitude and phase at each bottom; at the base the amplitude is 1, and
+    /// the phase 0 of no flux, or −π/2 of no pressure.
     fn waves(&self, root: f64) -> (f64, Vec<(f64, f64)>) {
         let mut waves = Vec::with_capacity(self.layers.len());
-        let (mut amplitude, mut phase) = (1.0, 0.0_f64);
+        let (mut amplitude, mut phase) = (1.0, self.phase_at_base());
         let mut below: Option<&Layer> = None;
         for layer in &self.layers {
             if let Some(below) = below {
@@ -273,12 +279,20 @@ impl LayeredColumn {
         (phase, waves)
     }
 
+    fn phase_at_base(&self) -> f64 {
+        match self.drainage {
+            Drainage::Top => 0.0,
+            Drainage::Both => -FRAC_PI_2,
+        }
+    }
+
     /// Mode `index`: its phase at the drained top is `(index + ½)π`, and grows with the root.
     fn mode(&self, index: usize) -> Mode {
         let wanted = (index as f64 + 0.5) * PI;
         let span: f64 = self.layers.iter().map(|layer| layer.thickness * layer.slowness()).sum();
         let margin = FRAC_PI_2 * self.layers.len() as f64;
-        let bracket = [(wanted - margin).max(0.0) / span, (wanted + margin) / span];
+        let turn = wanted - self.phase_at_base();
+        let bracket = [(turn - margin).max(0.0) / span, (turn + margin) / span];
         let root = bisected(bracket[0], bracket[1], |root| self.waves(root).0 - wanted);
         let waves = self.waves(root).1;
         let (mut start, mut norm) = (0.0, 0.0);
@@ -297,7 +311,7 @@ impl LayeredColumn {
     /// The transform of the pressure over the load on Talbot's contour for one time.
     fn transform(&self, seconds: f64) -> Vec<Image> {
         talbot_contour(NODES)
-            .map(|(z, weight)| Image::new(&self.layers, z / seconds, weight / seconds))
+            .map(|(z, weight)| Image::new(&self.layers, self.drainage, z / seconds, weight / seconds))
             .collect()
     }
 
@@ -369,8 +383,9 @@ impl State<'_> {
         let layer = &column.layers[at];
         let above = y - layer.bottom;
         let below_face = if at + 1 == column.layers.len() { depth } else { layer.thickness - above };
+        let is_drained = depth <= 0.0 || y <= 0.0 && column.drainage == Drainage::Both;
         match &self.form {
-            Form::Start | Form::Transform(_) if depth <= 0.0 => 0.0,
+            Form::Start | Form::Transform(_) if is_drained => 0.0,
             Form::Start => layer.undrained(),
             Form::Series { terms, seconds } => self.over_modes(*terms, *seconds, |mode, root| {
                 let (amplitude, phase) = mode.waves[at];
@@ -436,21 +451,27 @@ struct Image {
 }
 
 impl Image {
-    /// An upward sweep finds the flux `Y w + j` of the part `w` (`Y = j = 0` at the base), a downward sweep the values from
-    /// `p = 0` at the top.
-    fn new(layers: &[Layer], s: Complex<f64>, weight: Complex<f64>) -> Self {
+    /// An upward sweep finds the flux `Y w + j` of the part `w` (`Y = j = 0` at an impermeable base; of a drained one the value
+    /// is known in the place of the flux), a downward sweep the values from `p = 0` at the top.
+    fn new(layers: &[Layer], drainage: Drainage, s: Complex<f64>, weight: Complex<f64>) -> Self {
         let zero = Complex::new(0.0, 0.0);
         let root = elementary::sqrt_complex(s);
         let (mut admittance, mut flux, mut steady_below) = (zero, zero, zero);
         // Per layer: its Y and j at the bottom.
         let mut below = Vec::with_capacity(layers.len());
-        for layer in layers {
+        let is_drained = |at: usize| at == 0 && drainage == Drainage::Both;
+        for (at, layer) in layers.iter().enumerate() {
             let steady = Complex::new(layer.undrained(), 0.0) / s;
             // The part above a face is `steady_below − steady` more than the one below it.
             flux += admittance * (steady - steady_below);
             steady_below = steady;
             below.push((admittance, flux));
             let [layer_admittance, tangent, secant] = Self::layer_functions(layer, root);
+            if is_drained(at) {
+                admittance = layer_admittance / tangent;
+                flux = admittance * secant * steady;
+                continue;
+            }
             let share = (layer_admittance + admittance * tangent).inv() * layer_admittance;
             let next = (layer_admittance * tangent + admittance) * share;
             flux = flux * secant * share;
@@ -464,8 +485,12 @@ impl Image {
             let [layer_admittance, tangent, secant] = Self::layer_functions(layer, root);
             let (admittance, flux) = below[at];
             let top = pressure_above - steady;
-            let bottom = (top * secant - flux * tangent / layer_admittance) * layer_admittance
-                / (layer_admittance + admittance * tangent);
+            let bottom = if is_drained(at) {
+                -steady
+            } else {
+                (top * secant - flux * tangent / layer_admittance) * layer_admittance
+                    / (layer_admittance + admittance * tangent)
+            };
             faces[at] = [bottom, top];
             pressure_above = bottom + steady;
         }
@@ -548,7 +573,7 @@ mod tests {
     fn pressures_and_settlements_match_forty_digits() {
         let seconds_per_time_factor = ColumnParameters::default().time(1.0);
         for (name, layers) in columns() {
-            let column = LayeredColumn::new(1.0, &layers).unwrap();
+            let column = LayeredColumn::new(1.0, &layers, Drainage::Top).unwrap();
             let rows: Vec<Vec<&str>> = include_str!("../tests/reference/layered.csv")
                 .lines()
                 .map(|line| line.split(',').collect::<Vec<_>>())
@@ -570,8 +595,10 @@ mod tests {
 
     #[test]
     fn the_series_and_the_transform_agree_wherever_both_hold() {
-        for (name, layers) in columns() {
-            let column = LayeredColumn::new(1.0, &layers).unwrap();
+        for ((name, layers), drainage) in
+            columns().into_iter().flat_map(|one| Drainage::ALL.map(|drainage| (one.clone(), drainage)))
+        {
+            let column = LayeredColumn::new(1.0, &layers, drainage).unwrap();
             let slowest = 1.0 / column.modes[0].rate;
             for share in [1e-4, 1e-3, 0.02, 0.3, 2.0] {
                 let seconds = share * slowest;
@@ -596,7 +623,7 @@ mod tests {
     #[test]
     fn the_bound_of_the_tail_covers_the_modes_that_are_left_out() {
         for (name, layers) in columns() {
-            let column = LayeredColumn::new(1.0, &layers).unwrap();
+            let column = LayeredColumn::new(1.0, &layers, Drainage::Top).unwrap();
             let seconds = 0.02 / column.modes[0].rate;
             let pressure = |terms, y| {
                 State { column: &column, form: Form::Series { terms, seconds } }
@@ -616,7 +643,8 @@ mod tests {
         let seed = ColumnParameters { load: 3e3, ..ColumnParameters::default() };
         let terzaghi = Terzaghi::compressible(&seed).unwrap();
         let soil = Material::default();
-        let column = LayeredColumn::new(3e3, &[(0.2, soil), (0.5, soil), (0.3, soil)]).unwrap();
+        let column =
+            LayeredColumn::new(3e3, &[(0.2, soil), (0.5, soil), (0.3, soil)], Drainage::Top).unwrap();
         for time_factor in [0.0, 1e-9, 1e-6, 1e-4, 0.01, 0.3, 2.0, 30.0] {
             let seconds = seed.time(time_factor);
             for y in [0.0, 0.1, 0.2, 0.69, 0.9, 0.999, 1.0] {
@@ -646,7 +674,7 @@ mod tests {
     #[test]
     fn pressure_and_flux_are_continuous_and_the_start_is_undrained() {
         let layers = [(0.3, soil(3e7, 1e-8, 0.2)), (0.7, soil(1e6, 1e-4, 0.4))];
-        let column = LayeredColumn::new(1.0, &layers).unwrap();
+        let column = LayeredColumn::new(1.0, &layers, Drainage::Top).unwrap();
         let seconds = 0.01 / column.modes[0].rate;
         let step = 1e-6;
         let slope = |from: f64| {
@@ -660,12 +688,33 @@ mod tests {
         assert!((start - coupling / (coupling + layers[0].1.oedometric_modulus())).abs() < 1e-15);
     }
 
+    /// The four layers of Schiffman & Stein (1970), from the top down, with values of the Python package geotecha 0.2.2.
+    #[test]
+    fn layers_drained_at_both_ends_are_those_of_schiffman_and_stein() {
+        let (thicknesses, c_v) = ([10.0, 20.0, 30.0, 20.0], [0.0411, 0.1918, 0.0548, 0.0686]);
+        let m_v = [3.07e-3, 1.95e-3, 9.74e-4, 1.95e-3];
+        let unit_weight = Material::default().unit_weight_of_water();
+        let soil = |at: usize| Material {
+            youngs_modulus: 1.0 / m_v[at],
+            poissons_ratio: 0.0,
+            water_bulk_modulus: 1e18,
+            hydraulic_conductivity: c_v[at] * m_v[at] * unit_weight,
+            ..Material::default()
+        };
+        let layers: Vec<_> = (0..4).rev().map(|at| (thicknesses[at], soil(at))).collect();
+        let column = LayeredColumn::new(100.0, &layers, Drainage::Both).unwrap();
+        let pressure = column.fields_after(740.0, 75.0).unwrap().pressure;
+        let settlement = column.settlement_after(740.0).unwrap();
+        assert!((pressure - 48.69).abs() < 5e-3, "{pressure}");
+        assert!((settlement - 3.481).abs() < 1e-3, "{settlement}");
+    }
+
     #[test]
     fn impossible_layers_are_refused() {
-        assert!(LayeredColumn::new(1.0, &[]).is_err());
-        assert!(LayeredColumn::new(1.0, &[(0.0, Material::default())]).is_err());
-        assert!(LayeredColumn::new(f64::NAN, &[(1.0, Material::default())]).is_err());
-        let column = LayeredColumn::new(1.0, &[(1.0, Material::default())]).unwrap();
+        assert!(LayeredColumn::new(1.0, &[], Drainage::Top).is_err());
+        assert!(LayeredColumn::new(1.0, &[(0.0, Material::default())], Drainage::Top).is_err());
+        assert!(LayeredColumn::new(f64::NAN, &[(1.0, Material::default())], Drainage::Top).is_err());
+        let column = LayeredColumn::new(1.0, &[(1.0, Material::default())], Drainage::Top).unwrap();
         assert!(column.fields_after(-1.0, 0.5).is_err() && column.fields_after(1.0, 1.1).is_err());
     }
 }

@@ -10,6 +10,7 @@
 //! | [`cosine_layer`] | layer in plane strain under a cosine load | Biot (1941) |
 //! | [`mandel`] | slab between rigid plates | Mandel (1953), Cheng & Detournay (1988) |
 //! | [`layered`] | column of layers | Schiffman & Stein (1970) |
+//! | [`mirrored`] | columns of one soil drained at both ends | two of half the height |
 //! | [`yield_front`] | front of first loading that moves into a column | Neumann, in Carslaw & Jaeger (1959) |
 //! | [`shelf`] | Biot's column, Cryer's sphere, drains, seabed, injection, Davis & Raymond's column | there |
 //! | [`manufactured`] | motions of the unit square with body forces and sources that make them exact | docs/theory.md, Eqs 24–28 |
@@ -35,6 +36,7 @@ pub mod large_strain;
 pub mod layered;
 pub mod mandel;
 pub mod manufactured;
+pub mod mirrored;
 #[doc(hidden)]
 pub mod numerics;
 #[doc(hidden)]
@@ -52,7 +54,7 @@ pub mod yield_front;
 
 pub use crate::exact_error::{ExactError, normal};
 pub use crate::inputs::AddedKey;
-pub use crate::parameters::{Base, ColumnParameters, MotionParameters, ShelfParameters};
+pub use crate::parameters::{Base, ColumnParameters, Drainage, MotionParameters, ShelfParameters};
 pub use crate::reference::{Reference, ReferenceKind};
 pub use crate::shelf::ShelfProblem;
 pub use crate::solution::{Accuracy, FieldValues, Solution};

@@ -1,7 +1,7 @@
 //! The column and its material, as plain SI numbers.
 
 use crate::exact_error::{ExactError, normal, positive};
-pub use oedometer_soil::base::Base;
+pub use oedometer_soil::base::{Base, Drainage};
 use oedometer_soil::layers::SoilLayers;
 use oedometer_soil::material::Material;
 pub use oedometer_soil::motion::MotionParameters;
@@ -43,7 +43,7 @@ impl Default for ShelfParameters {
     }
 }
 
-/// A saturated column of soil on an impermeable base, drained and loaded at its top.
+/// A saturated column of soil, loaded and drained at its top, on a base that is impermeable unless it is drained too.
 ///
 /// The default is the seed column of Zheng et al. (2021, doi 10.1007/978-3-030-64514-4_88)
 /// under a load of 1 Pa.
@@ -55,6 +55,8 @@ pub struct ColumnParameters {
     pub length: f64,
     /// How a layer rests on its base; a column ignores it.
     pub base: Base,
+    /// Which ends let the water out; only Terzaghi's, Xie & Leo's and layered columns and large strain in general heed it.
+    pub drainage: Drainage,
     /// Load `q` on the top, compression positive, Pa.
     pub load: f64,
     /// Its soil; solutions in closed form heed its law and continuity only where they say so.
@@ -83,6 +85,7 @@ impl Default for ColumnParameters {
             height: 1.0,
             length: 1.0,
             base: Base::Rough,
+            drainage: Drainage::Top,
             load: 1.0,
             soil: Material::default(),
             loading_time: 0.0,
@@ -109,20 +112,31 @@ impl ColumnParameters {
         modulus / (self.soil.coupling_modulus() + modulus)
     }
 
-    /// Time `t = T_v H²/c_v` of a time factor, s; of a motion `ωt/π` is the factor.
+    /// Length of the water's way out, m: the height, or half of it where the base is drained.
+    fn drainage_path(&self) -> f64 {
+        match self.drainage {
+            Drainage::Top => self.height,
+            Drainage::Both => 0.5 * self.height,
+        }
+    }
+
+    /// Time `t = T_v H²/c_v` of a time factor, s, with half the height where the base is drained; of a motion `ωt/π` is the
+    /// factor.
     pub fn time(&self, time_factor: f64) -> f64 {
         if self.motion.frequency > 0.0 {
             return time_factor * (PI / self.motion.frequency);
         }
-        time_factor * self.height * self.height / self.soil.coefficient_of_consolidation()
+        let path = self.drainage_path();
+        time_factor * path * path / self.soil.coefficient_of_consolidation()
     }
 
-    /// Time factor `T_v = c_v t/H²` of a time in s; of a motion `ωt/π`.
+    /// Time factor `T_v = c_v t/H²` of a time in s, with half the height where the base is drained; of a motion `ωt/π`.
     pub fn time_factor(&self, time: f64) -> f64 {
         if self.motion.frequency > 0.0 {
             return time / (PI / self.motion.frequency);
         }
-        time * self.soil.coefficient_of_consolidation() / (self.height * self.height)
+        let path = self.drainage_path();
+        time * self.soil.coefficient_of_consolidation() / (path * path)
     }
 
     /// Settlement at the end of consolidation at small strain, `m_v q H`, m.

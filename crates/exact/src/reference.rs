@@ -15,7 +15,8 @@ use crate::layered::{self, LayeredColumn};
 use crate::mandel::{self, Mandel};
 use crate::manufactured::motion::{ManufacturedModel, Motion};
 use crate::manufactured::{self, Manufactured};
-use crate::parameters::{ColumnParameters, Water};
+use crate::mirrored::Mirrored;
+use crate::parameters::{ColumnParameters, Drainage, Water};
 use crate::shelf::ShelfProblem;
 use crate::single_mode::{self, SingleMode};
 use crate::solution::{Accuracy, FieldValues, Solution};
@@ -216,6 +217,23 @@ pub struct Reference {
     initial_stress: f64,
 }
 
+/// The solution of a column of one soil that a function solves on an impermeable base, with the drainage of the column.
+fn drained<S: Solution + 'static>(
+    parameters: &ColumnParameters,
+    solve: impl FnOnce(&ColumnParameters) -> Result<S, ExactError>,
+) -> Result<Arc<dyn Solution>, ExactError> {
+    Ok(match parameters.drainage {
+        Drainage::Top => Arc::new(solve(parameters)?),
+        Drainage::Both if parameters.soils.is_empty() => Arc::new(Mirrored::new(parameters, solve)?),
+        Drainage::Both => {
+            return Err(ExactError::Layers(
+                "that is drained at both ends is not symmetric, and has a solution at small strain alone: take the scene \
+                 `layered`",
+            ));
+        }
+    })
+}
+
 impl Reference {
     /// The reference `kind` of a column; references that must be computed in advance are computed for `time_factors`.
     ///
@@ -230,6 +248,9 @@ impl Reference {
         for &time_factor in time_factors {
             checked_time_factor(time_factor)?;
         }
+        if parameters.drainage == Drainage::Both && !kind.inputs(false).contains(&"drainage") {
+            return Err(ExactError::Drainage(kind.name()));
+        }
         let mut plane = None;
         let mut layer = |water| -> Result<Arc<dyn Solution>, ExactError> {
             let layer = CosineLayer::new(parameters, parameters.length, parameters.base, water)?;
@@ -238,17 +259,19 @@ impl Reference {
         };
         let dynamic = |start| DynamicColumn::new(parameters, start, time_factors);
         let solution: Arc<dyn Solution> = match kind {
-            ReferenceKind::Terzaghi => Arc::new(Terzaghi::compressible(parameters)?),
-            ReferenceKind::TerzaghiIncompressible => Arc::new(Terzaghi::incompressible(parameters)?),
+            ReferenceKind::Terzaghi => drained(parameters, Terzaghi::compressible)?,
+            ReferenceKind::TerzaghiIncompressible => drained(parameters, Terzaghi::incompressible)?,
             ReferenceKind::SingleMode => Arc::new(SingleMode::compressible(parameters)?),
-            ReferenceKind::XieLeo => Arc::new(XieLeo::new(parameters)?),
+            ReferenceKind::XieLeo => drained(parameters, XieLeo::new)?,
             ReferenceKind::DynamicColumn => Arc::new(dynamic(match parameters.loading_time {
                 0.0 => Start::Step,
                 duration => Start::Ramp { duration },
             })?),
             ReferenceKind::DynamicSingleMode => Arc::new(dynamic(Start::Mode)?),
             ReferenceKind::StandingWave => Arc::new(dynamic(Start::StandingWave)?),
-            ReferenceKind::LargeStrain(model) => Arc::new(LargeStrain::new(parameters, model, time_factors)?),
+            ReferenceKind::LargeStrain(model) => {
+                drained(parameters, |column| LargeStrain::new(column, model, time_factors))?
+            }
             ReferenceKind::CosineLayer => layer(Water::Compressible)?,
             ReferenceKind::CosineLayerIncompressible => layer(Water::Incompressible)?,
             ReferenceKind::Mandel => Arc::new(Mandel::new(parameters)?),
@@ -279,7 +302,7 @@ impl Reference {
         let ReferenceKind::LargeStrain(model) = kind else {
             return Self::new(kind, parameters, time_factors);
         };
-        let solution = Arc::new(LargeStrain::for_lines(parameters, model, time_factors)?);
+        let solution = drained(parameters, |column| LargeStrain::for_lines(column, model, time_factors))?;
         Ok(Self { kind, solution, plane: None, initial_stress: parameters.initial_stress(1.0) })
     }
 

@@ -2,16 +2,16 @@
 
 use crate::consolidation::{consolidated_below, isochrone};
 use crate::exact_error::ExactError;
-use crate::inputs::{COLUMN_KEYS, LAW_KEY, WATER_KEYS, WEIGHT_KEY};
+use crate::inputs::{COLUMN_KEYS, DRAINAGE_KEY, LAW_KEY, WATER_KEYS, WEIGHT_KEY};
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
 
 /// Study keys that the solution reads.
-pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, WEIGHT_KEY];
+pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, DRAINAGE_KEY, WATER_KEYS, LAW_KEY, WEIGHT_KEY];
 /// Study keys that the solution reads with incompressible water.
-pub(crate) const INPUTS_INCOMPRESSIBLE: &[&[&str]] = &[COLUMN_KEYS, LAW_KEY, WEIGHT_KEY];
+pub(crate) const INPUTS_INCOMPRESSIBLE: &[&[&str]] = &[COLUMN_KEYS, DRAINAGE_KEY, LAW_KEY, WEIGHT_KEY];
 
-/// Small-strain consolidation of a column that drains at its top (Terzaghi 1943).
+/// Small-strain consolidation of a column that drains at its top alone (Terzaghi 1943).
 ///
 /// With the storage ratio `B = Q/(Q + E_oed)`,
 ///

@@ -2,14 +2,14 @@
 
 use crate::consolidation::{consolidated_below, isochrone};
 use crate::exact_error::{ExactError, positive};
-use crate::inputs::{COLUMN_KEYS, LAW_KEY, WEIGHT_KEY};
+use crate::inputs::{COLUMN_KEYS, DRAINAGE_KEY, LAW_KEY, WEIGHT_KEY};
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
 /// Study keys that the solution reads; of the law, the continuity and the load's growth it takes its own.
 pub(crate) const INPUTS: &[&[&str]] =
-    &[COLUMN_KEYS, LAW_KEY, WEIGHT_KEY, &["porosity", "continuity", "loading_time"]];
+    &[COLUMN_KEYS, DRAINAGE_KEY, LAW_KEY, WEIGHT_KEY, &["porosity", "continuity", "loading_time"]];
 
 /// Xie & Leo (2004): consolidation at large strain of a soil with constant
 /// `m_vl = −(1/(1 + e)) de/dσ'` and `k = k_0 J²`, incompressible water.
@@ -28,34 +28,15 @@ pub struct XieLeo {
     parameters: ColumnParameters,
     /// `m = m_vl q`.
     strain: f64,
-    drainage: Drainage,
-}
-
-/// Which ends of the layer let the water out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Drainage {
-    /// The top only, on an impermeable base.
-    #[default]
-    Top,
-    /// Top and base: two columns of half the height, mirrored at mid-depth.
-    TopAndBase,
 }
 
 impl XieLeo {
-    /// The column drained at its top.
-    ///
-    /// # Errors
-    /// When the parameters are impossible or the load would close the pores.
-    pub fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
-        Self::drained(parameters, Drainage::Top)
-    }
-
-    /// The column with a choice of drained ends.
+    /// The column drained at its top alone.
     ///
     /// # Errors
     /// When the parameters are impossible, the load grows, or `m_vl q ≥ −ln(1 − n_0)`: the porosity
     /// `n = 1 − (1 − n_0)/J` would end below zero.
-    pub fn drained(parameters: &ColumnParameters, drainage: Drainage) -> Result<Self, ExactError> {
+    pub fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
         parameters.validate()?;
         let strain = positive(
             "load over the oedometric modulus",
@@ -75,15 +56,7 @@ impl XieLeo {
         if !parameters.soils.is_empty() {
             return Err(ExactError::Layers("has no closed form at large strain: ask for `large-strain`"));
         }
-        Ok(Self { parameters: *parameters, strain, drainage })
-    }
-
-    /// Time factor and depth of the column drained at its top that this one consists of.
-    fn equivalent(&self, time_factor: f64, zeta: f64) -> (f64, f64) {
-        match self.drainage {
-            Drainage::Top => (time_factor, zeta),
-            Drainage::TopAndBase => (4.0 * time_factor, 2.0 * zeta.min(1.0 - zeta)),
-        }
+        Ok(Self { parameters: *parameters, strain })
     }
 
     /// Final settlement over the height, `1 − e^{−m}`.
@@ -96,14 +69,12 @@ impl XieLeo {
     /// # Errors
     /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
     pub fn volume_ratio(&self, time_factor: f64, zeta: f64) -> Result<f64, ExactError> {
-        let (time_factor, zeta) = self.equivalent(time_factor, zeta);
         let isochrone = isochrone(zeta, time_factor)?.value;
         Ok(1.0 - self.final_strain() * (1.0 - isochrone))
     }
 
     /// Excess pore pressure at a relative depth, Pa.
     fn pressure(&self, time_factor: f64, zeta: f64) -> Result<f64, ExactError> {
-        let (time_factor, zeta) = self.equivalent(time_factor, zeta);
         let isochrone = isochrone(zeta, time_factor)?.value;
         let pressure = elementary::ln_1p(elementary::exp_m1(self.strain) * isochrone);
         Ok(self.parameters.load * (pressure / self.strain))
@@ -114,17 +85,7 @@ impl Solution for XieLeo {
     /// Pressure, effective (Cauchy) stress and displacement at a relative depth.
     fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
         let pressure = self.pressure(time_factor, zeta)?;
-        let (scaled_time_factor, depth) = self.equivalent(time_factor, zeta);
-        let below = consolidated_below(depth, scaled_time_factor)?.value;
-        // The layer under this depth, over H: all of it must end up below ζ = 1.
-        let compressed = match self.drainage {
-            Drainage::Top => below,
-            Drainage::TopAndBase => {
-                let half = consolidated_below(0.0, scaled_time_factor)?.value;
-                let side = if zeta <= 0.5 { below } else { -below };
-                0.5 * (half + side)
-            }
-        };
+        let compressed = consolidated_below(zeta, time_factor)?.value;
         Ok(FieldValues {
             pressure,
             effective_stress: pressure - self.parameters.load,
@@ -133,7 +94,6 @@ impl Solution for XieLeo {
     }
 
     fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
-        let (time_factor, _) = self.equivalent(time_factor, 0.0);
         Ok(self.final_settlement()? * consolidated_below(0.0, time_factor)?.value)
     }
 
@@ -148,7 +108,6 @@ impl Solution for XieLeo {
     }
 
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
-        let (time_factor, _) = self.equivalent(time_factor, 0.0);
         let base = isochrone(1.0, time_factor)?;
         // |∂p/∂W| ≤ (e^m − 1)/m_vl, reached at the drained surface.
         let slope = elementary::exp_m1(self.strain) / self.strain;

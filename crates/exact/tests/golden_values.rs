@@ -5,11 +5,10 @@ use oedometer_exact::cosine_layer::CosineLayer;
 use oedometer_exact::dynamic_column::{DynamicColumn, Start};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::large_strain::diffusion::Water;
-use oedometer_exact::parameters::Base;
-use oedometer_exact::parameters::ColumnParameters;
+use oedometer_exact::parameters::{Base, ColumnParameters, Drainage};
 use oedometer_exact::reference::{Reference, ReferenceKind};
 use oedometer_exact::solution::Solution;
-use oedometer_exact::xie_leo::{Drainage, XieLeo};
+use oedometer_exact::xie_leo::XieLeo;
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 use std::collections::BTreeMap;
@@ -74,20 +73,26 @@ impl Values {
 
     /// Notes what Xie & Leo give beside fields, for both drainages.
     fn note_drainages(&mut self, parameters: &ColumnParameters) -> Result<(), ExactError> {
-        for (drainage, name) in [(Drainage::Top, "top"), (Drainage::TopAndBase, "top and base")] {
-            let solution = XieLeo::drained(parameters, drainage)?;
+        for (drainage, name) in [(Drainage::Top, "top"), (Drainage::Both, "top and base")] {
+            let column = ColumnParameters { drainage, ..*parameters };
+            let solution = Reference::new(ReferenceKind::XieLeo, &column, &[])?;
+            let single = XieLeo::new(parameters)?;
             let case = format!("xie-leo drained at {name}");
-            for time_factor in TIME_FACTORS {
-                let mut note = |what: &str, value| self.note(&case, what, time_factor, value);
+            for time in TIME_FACTORS {
+                // All at the time of one drained end.
+                let time_factor = column.time_factor(parameters.time(time));
+                let mut note = |what: &str, value| self.note(&case, what, time, value);
                 note("settlement/H", solution.settlement(time_factor)? / parameters.height);
                 note("degree", solution.degree_of_consolidation(time_factor)?);
                 for zeta in DEPTHS {
                     let fields = solution.fields(time_factor, zeta)?;
                     note(&format!("p/q ζ={zeta}"), fields.pressure / parameters.load);
                     note(&format!("u/H ζ={zeta}"), fields.displacement / parameters.height);
-                    note(&format!("J ζ={zeta}"), solution.volume_ratio(time_factor, zeta)?);
+                    if drainage == Drainage::Top {
+                        note(&format!("J ζ={zeta}"), single.volume_ratio(time_factor, zeta)?);
+                    }
                 }
-                self.note_bound(&case, time_factor, solution.accuracy(time_factor)?.tail_bound);
+                self.note_bound(&case, time, solution.accuracy(time_factor)?.tail_bound);
             }
         }
         Ok(())

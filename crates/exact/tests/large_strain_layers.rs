@@ -3,7 +3,7 @@
 use oedometer_exact::large_strain::{LargeStrain, LargeStrainModel};
 use oedometer_exact::layered::LayeredColumn;
 use oedometer_exact::numerics::integrate;
-use oedometer_exact::parameters::ColumnParameters;
+use oedometer_exact::parameters::{ColumnParameters, Drainage};
 use oedometer_exact::solution::Solution;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::law::Law;
@@ -65,7 +65,7 @@ fn a_linear_law_gives_the_exact_layered_column_under_a_load_that_grows() {
     let large_strain = LargeStrain::new(&column, linear, &TIMES).unwrap();
     let soils: Vec<_> =
         column.soils.iter().map(|layer| (layer.thickness, layer.soil(&column.soil))).collect();
-    let exact = LayeredColumn::new(column.load, &soils).unwrap();
+    let exact = LayeredColumn::new(column.load, &soils, Drainage::Top).unwrap();
     for time_factor in [0.4, 1.0] {
         for zeta in [0.05, 0.4, 0.41, 0.7, 1.0] {
             // Every share of the load consolidates by itself (Duhamel).

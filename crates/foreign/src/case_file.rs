@@ -4,6 +4,7 @@ use oedometer_case::{Case, Key};
 use oedometer_problem::time_step::TimeStep;
 use oedometer_scenes::Scene;
 use oedometer_scenes::column::column_parameters;
+use oedometer_soil::base::Drainage;
 use oedometer_soil::elementary::powi;
 use oedometer_soil::layers::SoilLayer;
 use oedometer_soil::material::Material;
@@ -72,6 +73,8 @@ pub struct CaseColumn {
     /// Whether skeleton and water have a weight; the water level stands in the surface at the start. Pressures of a
     /// result are excess pressures in either case.
     pub self_weight: bool,
+    /// Which ends let the water out: `top`, or `both`, top and base; then `T_v = c_v t/(H/2)²`.
+    pub drainage: Drainage,
     /// Directions that this program would solve, 1 or 2.
     pub dimensions: usize,
     /// How a layer rests on its base, `rough` or `smooth`; of a column nothing.
@@ -92,7 +95,7 @@ pub struct Derived {
     pub unit_weight_of_water: f64,
     /// `c_v = k E_oed/γ_w`, drained, m²/s.
     pub coefficient_of_consolidation: f64,
-    /// `H²/c_v`, the time at which `T_v = 1`, s.
+    /// `H²/c_v`, or `(H/2)²/c_v` of a column drained at both ends, the time at which `T_v = 1`, s.
     pub seconds_per_time_factor: f64,
     /// Edge of a cell over the height, m.
     pub cell_size: f64,
@@ -112,13 +115,14 @@ impl CaseFile {
             solver: case.method.to_string(),
             scene: case.scene,
             problem: case.scene.summary.to_owned(),
-            axes: case.scene.axes.to_owned(),
+            axes: axes_of(case).to_owned(),
             column: CaseColumn {
                 height: column.height,
                 width: column.extent(),
                 load: column.pressure_scale(),
                 loading_time: column.loading_time,
                 self_weight: column.self_weight,
+                drainage: column.drainage,
                 dimensions: column.dimensions,
                 base: column.base().map(|base| base.name().to_owned()),
                 soils: column.soils.to_vec(),
@@ -151,6 +155,17 @@ impl CaseFile {
     }
 }
 
+/// What a solver has to know of the sides of a body, and whoever writes its result of the axes.
+fn axes_of(case: &Case) -> &'static str {
+    match case.column.drainage {
+        Drainage::Top => case.scene.axes,
+        Drainage::Both => {
+            "y is measured upward from the base, fixed and drained, to the drained surface, which carries a uniform load; along x \
+             there is neither flow nor motion"
+        }
+    }
+}
+
 /// The time step that a solver may take, s.
 pub fn suggested_step(case: &Case) -> f64 {
     if let TimeStep::Seconds(seconds) = case.time_step {
@@ -166,7 +181,7 @@ pub fn suggested_step(case: &Case) -> f64 {
 fn units() -> BTreeMap<String, String> {
     let of_table = |table: &'static str, place: &'static str| {
         Key::in_table(table)
-            .filter(|key| !key.unit.is_empty())
+            .filter(|key| !key.unit.is_empty() && key.in_place_of.is_empty())
             .map(move |key| (format!("{place}.{}", key.name), key.unit.to_owned()))
     };
     let derived = [

@@ -80,6 +80,8 @@ pub const KEY_NAMES: &[(&[&str], &str)] = &[
     (&["rho_s", "ρ_s", "rhos", "solid_density", "density_solid", "density_grains"], "grain_density"),
     (&["rho_w", "ρ_w", "rhow", "rho_f", "fluid_density", "density_water", "liquid_density"], "water_density"),
     (&["g", "gravitational_acceleration", "gravity_acceleration"], "gravity"),
+    (&["e_oed", "eoed", "constrained_modulus", "stiffness_modulus"], "oedometric_modulus"),
+    (&["c_v", "cv", "consolidation_coefficient"], "coefficient_of_consolidation"),
     (&["c_u", "cu", "s_u", "su", "cohesion", "shear_strength", "yield_strength"], "undrained_strength"),
     (
         &["p_c", "pc", "sigma_p", "preconsolidation_pressure", "preconsolidation_stress", "yield_stress"],
@@ -155,14 +157,7 @@ const DERIVED: &[(&[&str], &str)] = &[
         "the layers of a column are [[column.soils]], from the base up",
     ),
     (&["e", "void_ratio", "e0", "e_0"], "give the porosity instead, n = e/(1 + e): `porosity`"),
-    (
-        &["oedometric_modulus", "e_oed", "eoed", "constrained_modulus", "m_v", "mv", "stiffness_modulus"],
-        "it follows from `youngs_modulus` and `poissons_ratio`: E_oed = 1/m_v = E(1 − ν)/((1 + ν)(1 − 2ν))",
-    ),
-    (
-        &["c_v", "cv", "coefficient_of_consolidation", "consolidation_coefficient"],
-        "it follows from `hydraulic_conductivity`, `youngs_modulus` and `poissons_ratio`: c_v = k E_oed/γ_w",
-    ),
+    (&["m_v", "mv"], "give the oedometric modulus instead, E_oed = 1/m_v: `oedometric_modulus`"),
     (
         &["intrinsic_permeability", "kappa", "viscosity", "dynamic_viscosity", "mu"],
         "give the hydraulic conductivity instead, k = κ ρ_w g/μ in m/s: `hydraulic_conductivity`",

@@ -40,6 +40,9 @@ pub struct CriticalStep {
     pub unknown: Option<String>,
     /// Observed in runs, s; none where none failed.
     pub observed: Option<f64>,
+    /// Half of the bracket that is left of the search, over the observed step: a smaller difference is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resolution: Option<f64>,
     /// `h/c` with the fastest undamped wave, s.
     pub wave_limit: f64,
     /// Limit of explicit drag alone, s.
@@ -78,9 +81,18 @@ impl CriticalStep {
         self.unknown.is_none().then_some(self.predicted)
     }
 
-    /// Observed over predicted step, minus one.
+    /// Observed over predicted step, minus one; 0 where that is within the [resolution](Self::resolution) of the search.
     pub fn deviation(&self) -> Option<f64> {
-        self.observed.map(|observed| observed / self.predicted - 1.0)
+        let deviation = self.observed? / self.predicted - 1.0;
+        // The prediction lies at an end of the last bracket where the search confirms it.
+        // NaN stays.
+        let is_none = deviation.abs() <= 1.01 * self.resolution.unwrap_or(0.0);
+        Some(if is_none { 0.0 } else { deviation })
+    }
+
+    /// The resolution of the search, where observed and predicted step do not differ by more.
+    pub fn within(&self) -> Option<f64> {
+        self.resolution.filter(|_| self.deviation() == Some(0.0))
     }
 }
 
@@ -98,6 +110,23 @@ mod tests {
         };
         let failure = failure.map(failed);
         Probe { share, step: share, predicted_growth: None, steps: 10, reaches_end: true, failure }
+    }
+
+    #[test]
+    fn a_difference_below_the_resolution_of_the_search_is_none() {
+        let limit = |observed: f64| CriticalStep {
+            predicted: 2.0,
+            observed: Some(observed),
+            resolution: Some(5e-4),
+            ..CriticalStep::default()
+        };
+        for (observed, deviation, within) in
+            [(2.0009, 0.0, Some(5e-4)), (1.9991, 0.0, Some(5e-4)), (2.02, 0.01, None), (1.98, -0.01, None)]
+        {
+            let found = limit(observed);
+            assert!((found.deviation().expect("observed") - deviation).abs() < 1e-12, "{observed}");
+            assert_eq!(found.within(), within, "{observed}");
+        }
     }
 
     #[test]

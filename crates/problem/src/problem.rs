@@ -61,6 +61,8 @@ pub struct Problem {
 pub enum Faces {
     /// Rollers at the sides, a smooth base, a free top.
     Oedometer,
+    /// The same on a base that lets the water out.
+    DrainedBase,
     /// The same on a base that the skeleton sticks to.
     RoughBase,
     /// The same with an upper side that a plate moves.

@@ -2,7 +2,7 @@
 
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_problem::arrangement::{Arrangement, is_single_set, single_set};
-use oedometer_soil::base::Base;
+use oedometer_soil::base::{Base, Drainage};
 use oedometer_soil::layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
 use oedometer_soil::motion::MotionParameters;
@@ -30,6 +30,9 @@ pub struct Column {
     /// Whether skeleton and water have a weight, under a water level that stands in the surface at the start.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub self_weight: bool,
+    /// Which ends let the water out.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub drainage: Drainage,
     /// Where the points lie in their cells.
     #[serde(default, skip_serializing_if = "is_default")]
     pub points: Arrangement,
@@ -129,6 +132,7 @@ impl Default for Column {
             dimensions: 1,
             loading_time: 0.0,
             self_weight: false,
+            drainage: Drainage::Top,
             points: Arrangement::default(),
             soils: SoilLayers::default(),
             initial_stress: 0.0,
@@ -247,6 +251,7 @@ pub fn column_parameters(column: &Column, soil: &Material) -> ColumnParameters {
         base: column.base().unwrap_or_default(),
         loading_time: column.loading_time,
         self_weight: column.self_weight,
+        drainage: column.drainage,
         motion: match column.shape {
             Shape::Square { motion, .. } => motion,
             Shape::Column { .. } | Shape::Layer { .. } => MotionParameters::default(),

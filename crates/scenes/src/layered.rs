@@ -9,7 +9,7 @@ pub static LAYERED: Scene = Scene {
     name: "layered",
     summary: "column of several soils under a sudden load, drained at its top, small strain",
     question: Question::Layers,
-    takes: &["points", "soils"],
+    takes: &["drainage", "points", "soils"],
     references: &[SceneReference::own(ReferenceKind::Layered)],
     ..Scene::LOADED
 };

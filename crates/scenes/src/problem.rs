@@ -6,7 +6,7 @@ use crate::scene::{Body, LoadKind, Question, Scene, StartOf};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_problem::method::Method;
 use oedometer_problem::problem::{Faces, Load, Problem, Start, Weight};
-use oedometer_soil::base::Base;
+use oedometer_soil::base::{Base, Drainage};
 use oedometer_soil::material::Material;
 use std::sync::Arc;
 
@@ -64,6 +64,7 @@ impl Scene {
             Body::Square => Faces::Closed,
             Body::Slab => Faces::MovableSide,
             Body::Column | Body::Layer if column.base() == Some(Base::Rough) => Faces::RoughBase,
+            Body::Column if column.drainage == Drainage::Both => Faces::DrainedBase,
             Body::Column | Body::Layer => Faces::Oedometer,
         }
     }

@@ -10,7 +10,7 @@ use oedometer_soil::material::Material;
 pub static TERZAGHI: Scene = Scene {
     name: "terzaghi",
     summary: "column under a sudden load, drained at its top, small strain",
-    takes: &["points", "self_weight"],
+    takes: &["drainage", "points", "self_weight"],
     references: &[
         SceneReference::own(ReferenceKind::Terzaghi),
         SceneReference::beside(ReferenceKind::TerzaghiIncompressible, |_| Some("the water's storage")),

@@ -23,7 +23,7 @@ pub static XIE_LEO: Scene = Scene {
     strain: Strain::Large,
     soil: || Material { law: Law::LogLinear, ..Material::default() },
     laws: Laws::OfColumns,
-    takes: &["points", "self_weight", "loading_time", "soils"],
+    takes: &["drainage", "points", "self_weight", "loading_time", "soils"],
     references: &[
         SceneReference::own(LARGE_STRAIN),
         // Xie & Leo's load acts at once.

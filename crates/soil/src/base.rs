@@ -13,3 +13,15 @@ pub enum Base {
 }
 
 words!(Base: Rough "rough", Smooth "smooth");
+
+/// Which ends of a column let the water out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+pub enum Drainage {
+    /// The top only, on an impermeable base.
+    #[default]
+    Top,
+    /// Top and base.
+    Both,
+}
+
+words!(Drainage: Top "top", Both "both");

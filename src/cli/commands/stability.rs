@@ -104,6 +104,8 @@ fn agrees(found: &CriticalStep) -> bool {
 struct StabilityJson<'a> {
     label: String,
     deviation: Option<f64>,
+    /// Resolution of the search, where the two steps do not differ by more.
+    within: Option<f64>,
     stability: Option<&'a CriticalStep>,
     case: &'a crate::case::Case,
 }
@@ -113,6 +115,7 @@ impl<'a> StabilityJson<'a> {
         Self {
             label: record.case.label(),
             deviation: record.stability.as_ref().and_then(CriticalStep::deviation),
+            within: record.stability.as_ref().and_then(CriticalStep::within),
             stability: record.stability.as_ref(),
             case: &record.case,
         }

@@ -25,6 +25,8 @@ pub struct CriticalStepFinding {
     pub observed: Option<f64>,
     /// Observed over predicted step, less one.
     pub deviation: Option<f64>,
+    /// Resolution of the search, where the two do not differ by more.
+    pub within: Option<f64>,
     /// The predicted step, or the formula's, over `h/c`.
     pub over_wave_limit: f64,
     /// Step, s, from which on a mode grows slowly.
@@ -50,6 +52,7 @@ pub fn critical_steps(records: &[Record]) -> Vec<CriticalStepFinding> {
             predicted: found.known(),
             observed: found.observed,
             deviation: found.known().and(found.deviation()),
+            within: found.known().and(found.within()),
             over_wave_limit: found.predicted / found.wave_limit,
             creeping_from: found.creeping_from,
             probes: found.probes.clone(),

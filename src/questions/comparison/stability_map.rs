@@ -91,8 +91,9 @@ pub fn maps_of(records: &[Record]) -> Vec<StabilityMap> {
     let Some(axis) = widest_axis(records) else { return Vec::new() };
     let searched = records.iter().filter_map(|record| Some((&record.case, record.stability.as_ref()?)));
     let map = |(shared, cases): (String, Vec<_>)| {
-        let deviations =
-            cases.iter().map(|(_, found): &(&Case, &CriticalStep)| found.deviation().map_or(0.0, f64::abs));
+        let deviations = cases.iter().map(|(_, found): &(&Case, &CriticalStep)| {
+            found.within().unwrap_or(found.deviation().map_or(0.0, f64::abs))
+        });
         let largest_deviation = largest(deviations).unwrap_or(0.0);
         let curve = |(name, cases): (String, Vec<(&Case, &CriticalStep)>)| {
             let point = |(case, found): (&Case, &CriticalStep)| MapPoint {
@@ -170,6 +171,7 @@ mod tests {
                     creeping_from: None,
                     unknown: None,
                     observed: Some(2.0 * if number == place { worst } else { 0.9 }),
+                    resolution: None,
                     wave_limit: 4.0,
                     drag_limit: 8.0,
                     combined_limit: 3.0,

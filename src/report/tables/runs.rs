@@ -111,7 +111,10 @@ fn critical_step_row(found: &CriticalStepFinding) -> Vec<Cell> {
         Cell::Code(found.case.clone()),
         Cell::of(found.predicted, Cell::Error, no_limit),
         Cell::of(found.observed, Cell::Error, not_stable),
-        Cell::of(found.deviation, Cell::Percent, why),
+        match found.within {
+            Some(within) => Cell::Text(format!("within {:.2} %", 100.0 * within)),
+            None => Cell::of(found.deviation, Cell::Percent, why),
+        },
         Cell::Number(found.over_wave_limit),
         found.creeping_from.map_or(Cell::Text("–".to_owned()), Cell::Error),
     ];

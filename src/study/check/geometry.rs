@@ -137,6 +137,12 @@ impl Checker<'_> {
                 "leave `self_weight` out of a study of stability",
             ),
             (
+                "drainage",
+                !scene.takes("drainage"),
+                format!("the base of `{name}` is impermeable"),
+                "a column drained at both ends belongs to the scenes \"terzaghi\", \"xie-leo\" and \"layered\"",
+            ),
+            (
                 "initial_stress",
                 !scene.takes("initial_stress"),
                 format!("the soil of `{name}` has no stress history"),

@@ -210,6 +210,7 @@ impl Checker<'_> {
             );
         }
         self.attach_solvers(&file, case_seconds);
+        self.given_once(&file);
         let common = self.common(&file, Case::seed(task, scene));
         let mut base = common.base();
         let strain = self.given_strain(&file, &base);

@@ -277,7 +277,9 @@ fn gap_of(case: &Case) -> String {
 pub(super) fn tell_apart(planned: &mut [PlannedCase]) {
     // By the hash of its label: two labels with one hash make a name longer and no case another.
     let mut first_with: HashMap<u64, usize> = HashMap::new();
-    let mut alike_so_far: Vec<&Key> = Key::in_table("sweep").collect();
+    // What is given in other words would tell the same twice.
+    let own = || Key::in_table("sweep").filter(|key| key.in_place_of.is_empty());
+    let mut alike_so_far: Vec<&Key> = own().collect();
     for (place, PlannedCase { case, .. }) in planned.iter().enumerate() {
         let mut hasher = DefaultHasher::new();
         hasher.write(case.label().as_bytes());
@@ -286,7 +288,7 @@ pub(super) fn tell_apart(planned: &mut [PlannedCase]) {
             alike_so_far.retain(|key| key.get(&planned[first].case) == key.get(case));
         }
     }
-    let differ = Key::in_table("sweep").filter(|key| !alike_so_far.contains(key));
+    let differ = own().filter(|key| !alike_so_far.contains(key));
     let names: Arc<[&'static str]> = differ.map(|key| key.name).collect();
     for planned in planned {
         planned.case.swept = Arc::clone(&names);

@@ -1,9 +1,10 @@
 //! Checks of single values: inputs by the table of keys, methods, step rules, numbers in their range.
 
-use crate::case::keys::Range;
+use crate::case::keys::{KEYS, Range};
 use crate::case::{Case, Key, Kind, SolverName, Value};
 use crate::study::check::Checker;
 use crate::study::diagnostic::one_of;
+use crate::study::file::StudyFile;
 use crate::study::inputs::{Inputs, MethodTable, One, TimeStepTable, TypedInput};
 use crate::study::reading::Placed;
 use crate::study::solver::ExternalSolver;
@@ -49,6 +50,26 @@ impl Checker<'_> {
             self.input(key, one, &format!("{table}.{}", key.name), seed).map(|value| (*key, value))
         };
         inputs.0.iter().filter_map(value).collect()
+    }
+
+    /// Refuses a quantity that is given twice, by a key and by the one that stands in its place, at both places.
+    pub(super) fn given_once(&mut self, file: &StudyFile) {
+        let blocks: Vec<&Inputs> = file.sweep.iter().map(|block| &block.inputs).collect();
+        let mut complaints = Vec::new();
+        for key in KEYS.iter().filter(|key| !key.in_place_of.is_empty()) {
+            let of_study = |name: &str| file.material.inputs.span(name);
+            let anywhere = |name: &str| {
+                of_study(name).into_iter().chain(blocks.iter().filter_map(|block| block.span(name))).next()
+            };
+            if let (Some(place), Some(other)) = (anywhere(key.name), anywhere(key.in_place_of)) {
+                complaints.push((place, key.name, key.in_place_of));
+                complaints.push((other, key.in_place_of, key.name));
+            }
+        }
+        for (place, name, other) in complaints {
+            let message = format!("`{name}` is given, and `{other}`, which stands for the same");
+            self.complain(place, message, "leave one of the two out");
+        }
     }
 
     /// Index of a word among its choices.

@@ -10,7 +10,7 @@ mod similarity;
 pub use crate::large_strain::diffusion::{LargeStrainModel, Water};
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
-use crate::inputs::{COLUMN_KEYS, LAW_KEY, WATER_KEYS, WEIGHT_KEY};
+use crate::inputs::{COLUMN_KEYS, DRAINAGE_KEY, LAW_KEY, WATER_KEYS, WEIGHT_KEY};
 use crate::large_strain::diffusion::{Diffusion, Loading};
 use crate::large_strain::layers::{Layers, Profile};
 use crate::large_strain::march::{March, State};
@@ -20,7 +20,7 @@ use crate::solution::{Accuracy, FieldValues, Solution};
 
 /// Study keys that the solution reads.
 pub(crate) const INPUTS: &[&[&str]] =
-    &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, WEIGHT_KEY, &["continuity", "loading_time", "soils"]];
+    &[COLUMN_KEYS, DRAINAGE_KEY, WATER_KEYS, LAW_KEY, WEIGHT_KEY, &["continuity", "loading_time", "soils"]];
 
 /// Resolutions: points in depth and growth of the time step. Each is held against the one before.
 const RESOLUTIONS: [(usize, f64); 5] = [(14, 0.45), (20, 0.3), (30, 0.22), (44, 0.15), (64, 0.1)];

@@ -71,27 +71,6 @@ fn a_load_that_grows_is_refused_with_the_way_out() {
     assert!(error.contains("acts at once") && error.contains("`large-strain`"), "{error}");
 }
 
-#[test]
-fn two_drained_ends_are_two_half_columns() {
-    let two_way = XieLeo::drained(&column(0.2, 0.4), Drainage::TopAndBase).unwrap();
-    let half = ColumnParameters { height: 0.5, ..column(0.2, 0.4) };
-    let half = XieLeo::new(&half).unwrap();
-    for time_factor in [0.01, 0.05, 0.3] {
-        let upper = two_way.fields(time_factor, 0.15).unwrap();
-        let lower = two_way.fields(time_factor, 0.85).unwrap();
-        let single = half.fields(4.0 * time_factor, 0.3).unwrap();
-        assert!((upper.pressure - single.pressure).abs() < 1e-9);
-        assert!((upper.pressure - lower.pressure).abs() < 1e-9);
-        let settled = two_way.settlement(time_factor).unwrap();
-        let middle = two_way.fields(time_factor, 0.5).unwrap().displacement;
-        assert!((settled - 2.0 * half.settlement(4.0 * time_factor).unwrap()).abs() < 1e-16);
-        assert!((middle + 0.5 * settled).abs() < 1e-16);
-        // What the upper half moves less than the surface, the lower moves less than the base.
-        assert!((upper.displacement + lower.displacement + settled).abs() < 1e-16);
-        assert!(two_way.fields(time_factor, 1.0).unwrap().displacement.abs() < 1e-17);
-    }
-}
-
 proptest! {
     #[test]
     fn pressure_and_volume_agree(

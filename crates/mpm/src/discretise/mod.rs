@@ -241,6 +241,7 @@ fn balanced_weight<const D: usize>(problem: &Problem, points: &Points<D>) -> Vec
 fn support<const D: usize>(problem: &Problem, top: f64) -> Support<D> {
     let support = match problem.faces {
         Faces::Oedometer => Support::oedometer(),
+        Faces::DrainedBase => Support::oedometer().on_drained_base(),
         Faces::RoughBase => Support::oedometer().on_rough_base(),
         Faces::MovableSide => Support::oedometer().with_movable_side(),
         Faces::Closed => Support::closed(),

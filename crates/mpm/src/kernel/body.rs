@@ -72,28 +72,6 @@ pub struct Discrete<const D: usize> {
 }
 
 impl<const D: usize> Discrete<D> {
-    /// Scales all loads, stresses and motions of the start by a factor.
-    #[must_use]
-    pub fn scaled(mut self, factor: f64) -> Self {
-        self.load *= factor;
-        self.plate_load = self.plate_load.map(|load| factor * load);
-        self.weight = self.weight.map(|gravity| factor * gravity);
-        self.pressure_scale *= factor;
-        let points = &mut self.points;
-        points.pressure.iter_mut().for_each(|pressure| *pressure *= factor);
-        points.effective_stress.iter_mut().flatten().flatten().for_each(|stress| *stress *= factor);
-        self.balanced_weight.iter_mut().flatten().flatten().for_each(|stress| *stress *= factor);
-        points.history.iter_mut().for_each(|history| history.yield_stress *= factor);
-        points.solid_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
-        points.water_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
-        if let Some(water) = &mut self.water {
-            water.pressure.iter_mut().for_each(|pressure| *pressure *= factor);
-            water.water_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
-        }
-        self.initial_gradient.iter_mut().flatten().for_each(|gradient| *gradient *= factor);
-        self
-    }
-
     /// The least of a quantity over the soils.
     pub fn least_of_soils(&self, quantity: impl Fn(&Material) -> f64) -> f64 {
         self.soils.iter().map(quantity).fold(f64::INFINITY, f64::min)

@@ -65,8 +65,8 @@ impl<const D: usize> Body<D> {
         }
     }
 
-    /// Nodes whose fluxes, times these weights, are what passes the surface and goes before the plate, per area
-    /// of the surface.
+    /// Nodes whose fluxes, times these weights, are what passes the surface and a drained base and goes before the plate, per
+    /// area of the surface.
     pub fn outflow_weights(&self) -> Vec<(usize, Vector<D>)> {
         let mut weights = upward(self.actions.surface.mean_weights(&self.grid, &self.points));
         if let Some((plate, lead)) =
@@ -74,15 +74,18 @@ impl<const D: usize> Body<D> {
         {
             weights.push((*lead, along(NORMAL, plate.face_over_surface)));
         }
+        weights.extend(self.nodes.drained_base.iter().map(|(node, share)| (*node, along(D - 1, -share))));
         weights
     }
 
-    /// Outflow of a nodal flux through the surface and at the plate, per area of the surface.
+    /// Outflow of a nodal flux through the surface, a drained base and at the plate, per area of the surface.
     pub fn outflow_of(&self, field: &[Vector<D>]) -> f64 {
         let before_plate = self.actions.plate.as_ref().map_or(0.0, |plate| {
             plate.nodes.first().map_or(0.0, |lead| plate.face_over_surface * field[*lead][NORMAL])
         });
-        self.actions.surface.mean_of(&self.grid, &self.points, field) + before_plate
+        let through_base: f64 =
+            self.nodes.drained_base.iter().map(|(node, share)| share * field[*node][D - 1]).sum();
+        self.actions.surface.mean_of(&self.grid, &self.points, field) + before_plate - through_base
     }
 
     /// Largest force on a free node or on the plate that nothing balances, N.

@@ -66,6 +66,12 @@ impl<const D: usize> Body<D> {
         if free_water != 0.0 {
             self.actions.surface.press(free_water, &self.grid, &self.points, &mut self.nodes);
         }
+        // Under a drained base stands water of the same level.
+        let below = water_density * weight.gravity * weight.level;
+        let width: f64 = (0..up).map(|d| self.grid.cells[d] as f64 * self.grid.cell_size).product();
+        for (node, share) in &self.nodes.drained_base {
+            self.nodes.water_force[*node][up] += below * share * width;
+        }
     }
 
     /// Lets the nodes carry what the stresses of the weight and the hydrostatic pressure leave unbalanced of it: domains off

@@ -21,8 +21,6 @@ const WHOLE_COLUMN: usize = 24;
 pub const BISECTIONS: u32 = 24;
 /// Width of the last bracket, relative.
 const RESOLUTION: f64 = 1e-3;
-/// Strain under the load in a test of linear stability: a larger one would change the limit.
-const TINY_STRAIN: f64 = 1e-6;
 /// Growth per step that counts as unstable in a plane, whether a run shows it or not: a doubling in ten thousand steps.
 const SLOWEST_SEEN: f64 = 6.9e-5;
 /// Growth per step that a run of so many steps shows: `ln(5·10^4)/32768`.
@@ -43,15 +41,9 @@ pub fn critical_step<const D: usize>(
     most_steps: u64,
     observer: Observer<'_>,
 ) -> Result<CriticalStep, Stopped> {
-    let soil = &problem.material;
     let mut problem = problem.clone();
     // Growth is to be observed, not refused.
     problem.is_bounded = false;
-    // A problem of finite strain is judged at its start.
-    let tiny = TINY_STRAIN * soil.oedometric_modulus() / problem.pressure_scale.max(f64::MIN_POSITIVE);
-    if problem.configuration.deforms() && tiny < 1.0 {
-        problem = problem.scaled(tiny);
-    }
     let prediction = predict(&problem, settings, WHOLE_COLUMN);
     let strict = prediction.critical_step;
     let seen = if D > 1 { SLOWEST_SEEN } else { VISIBLE_GROWTH };
@@ -62,7 +54,7 @@ pub fn critical_step<const D: usize>(
     for share in SHARES {
         let step = share * predicted;
         let steps = steps_to(end, step).clamp(OBSERVED_STEPS, most_steps.max(OBSERVED_STEPS));
-        let (taken, failure) = leaves(&problem, settings, step, steps, observer)?;
+        let (taken, failure) = leaves(&problem, settings, [step, predicted], steps, observer)?;
         probes.push(Probe {
             share,
             step,
@@ -72,13 +64,14 @@ pub fn critical_step<const D: usize>(
             failure,
         });
     }
-    let observed = observed_step(&problem, settings, &probes, observer)?;
+    let (observed, resolution) = observed_step(&problem, settings, predicted, &probes, observer)?.unzip();
     let cell_size = problem.grid.cell_size;
     Ok(CriticalStep {
         predicted,
         creeping_from,
         unknown: prediction.growing.map(|growing| growing.to_string()),
         observed,
+        resolution,
         wave_limit: problem
             .least_of_soils(|soil| cell_size / wave_speeds::fastest_wave_speed(soil, soil.porosity)),
         drag_limit: problem.least_of_soils(wave_speeds::drag_limit),
@@ -89,14 +82,15 @@ pub fn critical_step<const D: usize>(
     })
 }
 
-/// Largest step that runs, by bisection; none where no step near the prediction fails. The search begins between the probes
+/// Largest step that runs, s, and half of the bracket that is left of the bisection, over it; none where no step near the prediction fails. The search begins between the probes
 /// and goes outwards where they contradict the prediction.
 fn observed_step<const D: usize>(
     problem: &Discrete<D>,
     settings: &ExplicitSettings,
+    predicted: f64,
     probes: &[Probe],
     observer: Observer<'_>,
-) -> Result<Option<f64>, Stopped> {
+) -> Result<Option<(f64, f64)>, Stopped> {
     // Growth that doubles in ten thousand steps shows in the spectral radius, where the problem is small enough, but not
     // in a run of a few ten thousand steps.
     let grows =
@@ -105,7 +99,8 @@ fn observed_step<const D: usize>(
         if grows(step) {
             return Ok(false);
         }
-        leaves(problem, settings, step, OBSERVED_STEPS, observer).map(|(_, failure)| failure.is_none())
+        leaves(problem, settings, [step, predicted], OBSERVED_STEPS, observer)
+            .map(|(_, failure)| failure.is_none())
     };
     let [below, above] = probes else { return Ok(None) };
     // A probe that failed only after more steps than the runs of the search have did not fail by their measure.
@@ -144,14 +139,15 @@ fn observed_step<const D: usize>(
             high = middle;
         }
     }
-    Ok(Some(0.5 * (low + high)))
+    let middle = 0.5 * (low + high);
+    Ok(Some((middle, 0.5 * (high - low) / middle)))
 }
 
-/// Runs a number of steps of a size; the steps taken, and how the run failed.
+/// Runs a number of steps of a size, which is told beside the predicted one; the steps taken, and how the run failed.
 fn leaves<const D: usize>(
     problem: &Discrete<D>,
     settings: &ExplicitSettings,
-    step: f64,
+    [step, predicted]: [f64; 2],
     steps: u64,
     observer: Observer<'_>,
 ) -> Result<(u64, Option<Failure>), Stopped> {
@@ -165,8 +161,8 @@ fn leaves<const D: usize>(
         formulation: Formulation::VW,
         threads: 1,
         time_limit: TimeLimit::default(),
-        // An observing run must not depend on the prediction.
-        critical_step: Some(step),
+        // Steps of so many seconds do not depend on it; a failure names their share of it.
+        critical_step: Some(predicted),
     };
     let outcome = run(problem.clone(), &schedule, observer);
     let failure = match outcome.status {
@@ -199,13 +195,12 @@ mod tests {
         let problem = column_problem::<1>(&TERZAGHI, &column, &soil, method, 4, 2).expect("a column");
         let observed_limit = |steps: [f64; 2]| {
             let probes = steps.map(|step| {
-                let (steps, failure) =
-                    leaves(&problem, &settings, step, OBSERVED_STEPS, &|_, _| true).expect("nobody stops it");
+                let (steps, failure) = leaves(&problem, &settings, [step; 2], OBSERVED_STEPS, &|_, _| true)
+                    .expect("nobody stops it");
                 Probe { share: 1.0, step, predicted_growth: None, steps, reaches_end: true, failure }
             });
-            observed_step(&problem, &settings, &probes, &|_, _| true)
-                .expect("nobody stops it")
-                .expect("a limit")
+            let found = observed_step(&problem, &settings, steps[0], &probes, &|_, _| true);
+            found.expect("nobody stops it").expect("a limit").0
         };
         let predicted = predict(&problem, &settings, WHOLE_COLUMN).critical_step;
         let about = observed_limit([0.97 * predicted, 1.03 * predicted]);

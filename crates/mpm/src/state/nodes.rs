@@ -58,6 +58,8 @@ pub struct Nodes<const D: usize> {
     /// water's velocity, for the points around move with a skeleton that the base does not hold (docs/theory.md,
     /// Eq. 36).
     pub sliding: Vec<Vector<D>>,
+    /// Nodes of a drained base, with their shares of its width; none of a base that no water passes.
+    pub drained_base: Vec<(usize, f64)>,
     /// The skeleton's supports alone.
     supports: Vec<Vector<D>>,
     /// The water's supports alone.
@@ -92,6 +94,8 @@ pub struct Support<const D: usize> {
     pub upper: [bool; D],
     /// Whether the skeleton sticks to the base: no displacement along it either.
     pub rough_base: bool,
+    /// Whether the water passes the base.
+    pub drained_base: bool,
     /// Rigid plate on the upper face, from the lower side on, that moves as it is told to.
     pub plate: Option<PlateOnTop>,
     /// Last node below the free surface that has enough of the material to stand alone, where splines
@@ -124,17 +128,31 @@ impl<const D: usize> Support<D> {
     pub fn oedometer() -> Self {
         let mut upper = [true; D];
         upper[D - 1] = false;
-        Self { lower: [true; D], upper, rough_base: false, plate: None, outermost: None }
+        Self { lower: [true; D], upper, rough_base: false, drained_base: false, plate: None, outermost: None }
     }
 
     /// Rollers on every face.
     pub fn closed() -> Self {
-        Self { lower: [true; D], upper: [true; D], rough_base: false, plate: None, outermost: None }
+        Self {
+            lower: [true; D],
+            upper: [true; D],
+            rough_base: false,
+            drained_base: false,
+            plate: None,
+            outermost: None,
+        }
     }
 
     /// Nothing held at all.
     pub fn free() -> Self {
-        Self { lower: [false; D], upper: [false; D], rough_base: false, plate: None, outermost: None }
+        Self {
+            lower: [false; D],
+            upper: [false; D],
+            rough_base: false,
+            drained_base: false,
+            plate: None,
+            outermost: None,
+        }
     }
 
     /// These faces with an upper side that a plate moves.
@@ -153,11 +171,41 @@ impl<const D: usize> Support<D> {
         })
     }
 
+    /// These faces on a base that lets the water out.
+    #[must_use]
+    pub fn on_drained_base(self) -> Self {
+        Self { drained_base: true, ..self }
+    }
+
     /// These faces on a base that the skeleton sticks to.
     #[must_use]
     pub fn on_rough_base(self) -> Self {
         Self { rough_base: true, ..self }
     }
+}
+
+/// Nodes on the base of a body that is drained there, with their shares of its width: of a node at a side half of a cell.
+fn drained_base_of<const D: usize>(
+    grid: &Grid<D>,
+    support: &Support<D>,
+    tolerance: f64,
+) -> Vec<(usize, f64)> {
+    if !support.drained_base {
+        return Vec::new();
+    }
+    let width = |d: usize| grid.cells[d] as f64 * grid.cell_size;
+    let share = |node: usize| {
+        let position = grid.node_position(node);
+        let of_cells = |d: usize| {
+            let (place, cells) = (position[d], grid.cells[d] as f64);
+            let is_inside = (-tolerance..=width(d) + tolerance).contains(&place);
+            let is_side = place < tolerance || place > width(d) - tolerance;
+            f64::from(u8::from(is_inside)) * if is_side { 0.5 } else { 1.0 } / cells
+        };
+        let is_base = position[D - 1].abs() < tolerance;
+        if is_base { (0..D - 1).map(of_cells).product() } else { 0.0 }
+    };
+    (0..grid.node_count()).map(|node| (node, share(node))).filter(|(_, share)| *share > 0.0).collect()
 }
 
 impl<const D: usize> Nodes<D> {
@@ -166,7 +214,7 @@ impl<const D: usize> Nodes<D> {
     pub fn new(grid: &Grid<D>, support: &Support<D>, cell_mass: f64) -> Self {
         let count = grid.node_count();
         let tolerance = 1e-6 * grid.cell_size;
-        let water_supports: Vec<Vector<D>> = (0..count)
+        let mut water_supports: Vec<Vector<D>> = (0..count)
             .map(|node| {
                 let position = grid.node_position(node);
                 std::array::from_fn(|d| {
@@ -189,6 +237,10 @@ impl<const D: usize> Nodes<D> {
                     supports[node] = [0.0; D];
                 }
             }
+        }
+        let drained_base = drained_base_of(grid, support, tolerance);
+        for (node, _) in &drained_base {
+            water_supports[*node][D - 1] = 1.0;
         }
         let mut sliding = vec![[0.0; D]; count];
         for node in (0..count).filter(|_| support.rough_base) {
@@ -229,6 +281,7 @@ impl<const D: usize> Nodes<D> {
             free: vectors.clone(),
             water_free: vectors,
             sliding,
+            drained_base,
             supports,
             water_supports,
             active: Vec::with_capacity(count),
@@ -405,6 +458,19 @@ mod tests {
         assert_eq!(at(1, 5), [0.0, 1.0]);
         assert_eq!(at(1, 10), [0.0, 1.0]);
         assert_eq!(nodes.free[grid.flat_node(&[2, 1])], [0.0, 0.0], "below the base");
+    }
+
+    #[test]
+    fn a_drained_base_holds_the_skeleton_and_lets_the_water_out() {
+        let grid = Grid::new(0.1, [2, 3]);
+        let support = Support::oedometer().on_drained_base();
+        let mut nodes = Nodes::new(&grid, &support, 1.0);
+        nodes.sums.masses.fill([[1.0; 4]]);
+        nodes.take_masses(&Material::default(), false);
+        let at = |x: usize, y: usize| grid.flat_node(&[x + 2, y + 2]);
+        assert_eq!(nodes.drained_base, [(at(0, 0), 0.25), (at(1, 0), 0.5), (at(2, 0), 0.25)]);
+        assert_eq!((nodes.free[at(1, 0)], nodes.water_free[at(1, 0)]), ([1.0, 0.0], [1.0, 1.0]));
+        assert_eq!(nodes.water_free[grid.flat_node(&[3, 1])], [1.0, 0.0], "below the base");
     }
 
     #[test]
