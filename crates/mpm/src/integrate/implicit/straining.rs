@@ -63,16 +63,21 @@ impl<const D: usize> Trial<D> {
             }
             let start = anchor_ratio[point];
             let mut strain = StrainIncrement { gradient, dilation, volume_ratio: [start; 2] };
-            let mut deformation = identity();
+            let (mut deformation, mut moved) = (identity(), identity());
             if deforms {
                 let before = &anchor_deformation[point];
                 let after = sum(before, &gradient);
-                let (inverse_after, volume) = inverse(&after);
+                let volume;
+                if trace.is_some() && moves {
+                    // Of the kinematics only the volume goes the way of the water's, as in the explicit step. A domain that did so
+                    // would keep its length where points move apart, and nothing would resist that (docs/methods.md).
+                    moved = sum(before, &motion);
+                    inverse_deformation[point] = inverse(&moved).0;
+                    volume = inverse(&after).1;
+                } else {
+                    (inverse_deformation[point], volume) = inverse(&after);
+                }
                 let stretch = volume / inverse(before).1;
-                // Of the kinematics only the volume goes the way of the water's, as in the explicit step. A domain that did so
-                // would keep its length where points move apart, and nothing would resist that (docs/methods.md).
-                inverse_deformation[point] =
-                    if trace.is_some() && moves { inverse(&sum(before, &motion)).0 } else { inverse_after };
                 volume_ratio[point] = start * stretch;
                 strain.volume_ratio[1] = start * stretch;
                 deformation = after;
@@ -87,7 +92,7 @@ impl<const D: usize> Trial<D> {
                 if trace.is_none() || !moves {
                     return product(&deformation, &carried[point]);
                 }
-                let whole = product(&inverse(&inverse_deformation[point]).0, &carried[point]);
+                let whole = product(&moved, &carried[point]);
                 assumed(&whole, volume_ratio[point] / inverse(&whole).1)
             });
             effective_stress[point] = stress;
