@@ -194,7 +194,8 @@ fn critical_step_of(case: &Case, observe: &dyn Fn(u64, u64) -> bool) -> Result<O
 fn outcome_of_search(case: &Case, found: CriticalStep) -> Outcome {
     let largest = found.observed.unwrap_or(found.predicted);
     let predicted = found.predicted;
-    let steps = StepSizes { predicted_critical: predicted, target: predicted, largest, growth: None };
+    let steps =
+        StepSizes { predicted_critical: predicted, target: predicted, largest, ..StepSizes::default() };
     let steps_done = found.probes.iter().map(|probe| probe.steps).sum();
     let inside = inside_of_search(case, steps_done, Some(found));
     Outcome::of_end(Status::Ok).with_steps(steps).with_inside(inside)

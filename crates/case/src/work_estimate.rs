@@ -79,9 +79,11 @@ pub fn estimated_steps(case: &Case) -> f64 {
         Task::Solve if end == 0.0 => 0.0,
         Task::Solve => end / step,
         Task::Stability => {
-            // Runs of a fixed length bracket the limit; that below it ends with the scene, or before, and that above soon.
+            // Runs bracket the limit, of a fixed length unless the body deforms; that below it ends with the scene, or before,
+            // and that above soon.
             let observed = OBSERVED_STEPS as f64;
-            HELD_RUNS * observed + (end / step).clamp(observed, MOST_PROBE_STEPS as f64)
+            let whole = (end / step).clamp(observed, MOST_PROBE_STEPS as f64);
+            HELD_RUNS * if case.configuration().deforms() { whole } else { observed } + whole
         }
     }
 }

@@ -171,6 +171,9 @@ pub struct StepSizes {
     pub target: f64,
     /// Largest step taken; outputs are hit exactly, so it is at most the target.
     pub largest: f64,
+    /// Smallest critical step of a run whose steps follow the deformation of the body, s; none where it stays that of the start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub smallest_critical: Option<f64>,
     /// Factor by which the fastest mode grows until the last output under steps of the target, by the eigenvalues of the
     /// step on the initial configuration; none where nothing grows beyond the round-off of the eigenvalues.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -10,8 +10,8 @@ use oedometer_problem::outcome::{
 use oedometer_problem::snapshot::Snapshot;
 use oedometer_problem::time_step::{Steps, steps_for};
 
-/// Steps after which deforming points are given a new step size: the pores at the drained end
-/// close within a hundred.
+/// Steps after which deforming points are given a new step size, fewer at first: the pores at the drained end close within a
+/// hundred.
 const STEP_RENEWAL: u64 = 32;
 /// Share of the step that the estimate promises to be accurate enough.
 const SAFETY: f64 = 0.9;
@@ -99,7 +99,10 @@ impl<'a> Driver<'a> {
         while output - self.time > 1e-9 * output {
             match self.plan.steps {
                 Steps::Tolerance { tolerance, .. } => self.adapt_step(output, tolerance)?,
-                limit => self.take_row(&self.next_row(limit, output))?,
+                limit => {
+                    let row = self.next_row(limit, output);
+                    self.take_row(&row)?;
+                }
             }
         }
         let snapshot = self.stepper.snapshot(self.time);
@@ -115,14 +118,15 @@ impl<'a> Driver<'a> {
     }
 
     /// The next steps of one size towards `output`.
-    fn next_row(&self, limit: Steps, output: f64) -> EqualSteps {
-        match self.stepper.step_reduction() {
-            None => limit.row(self.time, output),
-            Some(reduction) => {
-                let row = Steps::Constant(self.sizes.target * reduction).row(self.time, output);
-                EqualSteps { count: row.count.min(STEP_RENEWAL), ..row }
-            }
+    fn next_row(&mut self, limit: Steps, output: f64) -> EqualSteps {
+        let Some(reduction) = self.stepper.step_reduction() else { return limit.row(self.time, output) };
+        if reduction < 1.0 {
+            let critical = self.sizes.predicted_critical * reduction;
+            let smallest = self.sizes.smallest_critical.map_or(critical, |before| before.min(critical));
+            self.sizes.smallest_critical = Some(smallest);
         }
+        let row = Steps::Constant(self.sizes.target * reduction).row(self.time, output);
+        EqualSteps { count: row.count.min(Watch::steps_to_look(self.counters.steps, STEP_RENEWAL)), ..row }
     }
 
     /// Makes a row of steps, with a look after every few.

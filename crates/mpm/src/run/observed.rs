@@ -1,10 +1,13 @@
 //! The critical time step of a problem, predicted and observed.
 //!
 //! Predicted from the spectral radius of the step operator on the problem's own grid; observed in runs of the solver
-//! itself, independent of the prediction, by bisection between a step that runs and one that fails.
+//! itself, independent of the prediction, by bisection between a step that runs and one that fails. Where the body deforms the
+//! limit changes along the run: there the runs are those of a user, whose steps are a share of the limit of the moment.
 
 use crate::integrate::critical_step::power;
-use crate::integrate::critical_step::predicted::{one_point_set, predict, whole_growth};
+use crate::integrate::critical_step::predicted::{
+    Prediction, one_point_set, predict, predict_for_run, whole_growth,
+};
 use crate::kernel::body::{Body, Discrete};
 use crate::run::{Kernel, Observer, Schedule, run};
 use crate::time_limit::TimeLimit;
@@ -25,6 +28,11 @@ const RESOLUTION: f64 = 1e-3;
 const SLOWEST_SEEN: f64 = 6.9e-5;
 /// Growth per step that a run of so many steps shows: `ln(5·10^4)/32768`.
 const VISIBLE_GROWTH: f64 = 3.3e-4;
+/// Width of the last bracket of shares, relative.
+const SHARE_RESOLUTION: f64 = 5e-3;
+/// Smallest share that is tried: a run that fails under it fails by more than its steps.
+const LEAST_SHARE: f64 = 0.05;
+
 /// The observer stopped the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stopped;
@@ -41,6 +49,9 @@ pub fn critical_step<const D: usize>(
     most_steps: u64,
     observer: Observer<'_>,
 ) -> Result<CriticalStep, Stopped> {
+    if problem.configuration.deforms() {
+        return SharesOfRuns::new(problem, settings, end, most_steps, observer).critical_step();
+    }
     let mut problem = problem.clone();
     // Growth is to be observed, not refused.
     problem.is_bounded = false;
@@ -65,25 +76,137 @@ pub fn critical_step<const D: usize>(
         });
     }
     let (observed, resolution) = observed_step(&problem, settings, predicted, &probes, observer)?.unzip();
-    let cell_size = problem.grid.cell_size;
     Ok(CriticalStep {
         predicted,
         creeping_from,
         unknown: prediction.growing.map(|growing| growing.to_string()),
         observed,
         resolution,
+        probes,
+        ..by_formula(&problem, settings)
+    })
+}
+
+/// What is known of a problem's critical step without a run.
+fn by_formula<const D: usize>(problem: &Discrete<D>, settings: &ExplicitSettings) -> CriticalStep {
+    let cell_size = problem.grid.cell_size;
+    CriticalStep {
         wave_limit: problem
             .least_of_soils(|soil| cell_size / wave_speeds::fastest_wave_speed(soil, soil.porosity)),
         drag_limit: problem.least_of_soils(wave_speeds::drag_limit),
         combined_limit: problem
             .least_of_soils(|soil| wave_speeds::combined_limit(soil, cell_size, settings.drag)),
-        probes,
-        asymmetry: Some(power::asymmetry(&Body::new(one_point_set(&problem)))),
-    })
+        asymmetry: Some(power::asymmetry(&Body::new(one_point_set(problem)))),
+        ..CriticalStep::default()
+    }
 }
 
-/// Largest step that runs, s, and half of the bracket that is left of the bisection, over it; none where no step near the prediction fails. The search begins between the probes
-/// and goes outwards where they contradict the prediction.
+/// Runs of a body that deforms, whose steps are shares of the critical one.
+struct SharesOfRuns<'a, const D: usize> {
+    problem: &'a Discrete<D>,
+    settings: &'a ExplicitSettings,
+    prediction: Prediction<D>,
+    /// End of the scene, s.
+    end: f64,
+    most_steps: u64,
+    observer: Observer<'a>,
+}
+
+/// What became of the run of a share.
+struct RunOfShare {
+    steps: u64,
+    reaches_end: bool,
+    /// Smallest critical step on its way, s.
+    smallest: f64,
+    failure: Option<Failure>,
+}
+
+impl<'a, const D: usize> SharesOfRuns<'a, D> {
+    fn new(
+        problem: &'a Discrete<D>,
+        settings: &'a ExplicitSettings,
+        end: f64,
+        most_steps: u64,
+        observer: Observer<'a>,
+    ) -> Self {
+        let prediction = predict_for_run(problem, settings);
+        Self { problem, settings, prediction, end, most_steps, observer }
+    }
+
+    /// The critical step: predicted the smallest of the run, observed the largest share of it under which the run ends.
+    fn critical_step(&self) -> Result<CriticalStep, Stopped> {
+        let runs = SHARES.map(|share| self.run(share));
+        let [below, above] = runs;
+        let runs = [below?, above?];
+        let (observed, smallest) = self.observed_share(&runs)?;
+        let probe = |(share, run): (f64, RunOfShare)| Probe {
+            share,
+            step: share * smallest,
+            predicted_growth: self.prediction.growth(share * self.prediction.critical_step),
+            steps: run.steps,
+            reaches_end: run.reaches_end,
+            failure: run.failure,
+        };
+        Ok(CriticalStep {
+            predicted: smallest,
+            unknown: self.prediction.growing.map(|growing| growing.to_string()),
+            observed: observed.map(|[low, high]| 0.5 * (low + high) * smallest),
+            resolution: observed.map(|[low, high]| (high - low) / (high + low)),
+            probes: SHARES.into_iter().zip(runs).map(probe).collect(),
+            ..by_formula(self.problem, self.settings)
+        })
+    }
+
+    /// Shares between which runs begin to fail, where there are any, and the smallest critical step of the run of the largest
+    /// share that ends.
+    fn observed_share(&self, probes: &[RunOfShare; 2]) -> Result<(Option<[f64; 2]>, f64), Stopped> {
+        let [mut low, mut high] = SHARES;
+        let [below, above] = probes;
+        let mut smallest = below.smallest;
+        if above.failure.is_none() {
+            return Ok((None, above.smallest));
+        }
+        let mut runs = below.failure.is_none();
+        while !runs {
+            (high, low) = (low, 0.5 * low);
+            if low < LEAST_SHARE {
+                return Ok((None, smallest));
+            }
+            let run = self.run(low)?;
+            (runs, smallest) = (run.failure.is_none(), run.smallest);
+        }
+        while high - low > SHARE_RESOLUTION * low {
+            let middle = 0.5 * (low + high);
+            let run = self.run(middle)?;
+            if run.failure.is_none() {
+                (low, smallest) = (middle, run.smallest);
+            } else {
+                high = middle;
+            }
+        }
+        Ok((Some([low, high]), smallest))
+    }
+
+    /// The run that a user makes with steps of this share: to the end of the scene, or as far as growth shows.
+    fn run(&self, share: f64) -> Result<RunOfShare, Stopped> {
+        let critical = self.prediction.critical_step;
+        let step = share * critical;
+        let steps = steps_to(self.end, step).clamp(OBSERVED_STEPS, self.most_steps.max(OBSERVED_STEPS));
+        let end = steps as f64 * step;
+        let schedule =
+            Schedule { rule: TimeStep::Stable(share), ..schedule_of(self.settings, end, critical) };
+        let outcome = run(self.problem.clone(), &schedule, self.observer);
+        Ok(RunOfShare {
+            steps: outcome.counters.steps,
+            reaches_end: end >= self.end * (1.0 - 1e-9),
+            smallest: outcome.step_sizes.smallest_critical.unwrap_or(critical),
+            failure: failure_of(outcome.status)?,
+        })
+    }
+}
+
+/// Largest step that runs, s, and half of the bracket that is left of the bisection, over it; none where no step near the
+/// prediction fails. The search begins between the probes and goes outwards where they contradict the prediction.
 fn observed_step<const D: usize>(
     problem: &Discrete<D>,
     settings: &ExplicitSettings,
@@ -152,25 +275,36 @@ fn leaves<const D: usize>(
     observer: Observer<'_>,
 ) -> Result<(u64, Option<Failure>), Stopped> {
     let schedule = Schedule {
-        outputs: vec![steps as f64 * step],
+        rule: TimeStep::Seconds(step),
+        // Steps of so many seconds do not depend on the critical one; a failure names their share of it.
+        ..schedule_of(settings, steps as f64 * step, predicted)
+    };
+    let outcome = run(problem.clone(), &schedule, observer);
+    Ok((outcome.counters.steps, failure_of(outcome.status)?))
+}
+
+/// A run to an end, s, under the critical step, with a critical step that is known.
+fn schedule_of(settings: &ExplicitSettings, end: f64, critical: f64) -> Schedule {
+    Schedule {
+        outputs: vec![end],
         history: Vec::new(),
-        time_step: TimeStep::Seconds(step),
+        rule: TimeStep::Seconds(critical),
         settings: *settings,
         kernel: Kernel::Fastest,
         integrator: IntegratorKind::Explicit,
         formulation: Formulation::VW,
         threads: 1,
         time_limit: TimeLimit::default(),
-        // Steps of so many seconds do not depend on it; a failure names their share of it.
-        critical_step: Some(predicted),
-    };
-    let outcome = run(problem.clone(), &schedule, observer);
-    let failure = match outcome.status {
-        RunStatus::Ok => None,
-        RunStatus::Failed(failure) if failure.kind == FailureKind::Stopped => return Err(Stopped),
-        RunStatus::Failed(failure) => Some(failure),
-    };
-    Ok((outcome.counters.steps, failure))
+        critical_step: Some(critical),
+    }
+}
+
+fn failure_of(status: RunStatus) -> Result<Option<Failure>, Stopped> {
+    match status {
+        RunStatus::Ok => Ok(None),
+        RunStatus::Failed(failure) if failure.kind == FailureKind::Stopped => Err(Stopped),
+        RunStatus::Failed(failure) => Ok(Some(failure)),
+    }
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
@@ -183,8 +317,10 @@ mod tests {
     use super::*;
     use crate::tests::column_problem;
     use oedometer_problem::method::Method;
-    use oedometer_scenes::TERZAGHI;
+    use oedometer_problem::settings::Drag;
     use oedometer_scenes::column::Column;
+    use oedometer_scenes::{TERZAGHI, XIE_LEO};
+    use oedometer_soil::law::Law;
     use oedometer_soil::material::Material;
 
     #[test]
@@ -192,7 +328,8 @@ mod tests {
         let settings = ExplicitSettings::default();
         let method = Method::named("GIMP-SRI-patch").expect("a known method");
         let (column, soil) = (Column::default(), Material::default());
-        let problem = column_problem::<1>(&TERZAGHI, &column, &soil, method, 4, 2).expect("a column");
+        let problem =
+            column_problem::<1>(&TERZAGHI, &column, &soil, method, 4, 2).expect("a column");
         let observed_limit = |steps: [f64; 2]| {
             let probes = steps.map(|step| {
                 let (steps, failure) = leaves(&problem, &settings, [step; 2], OBSERVED_STEPS, &|_, _| true)
@@ -208,6 +345,42 @@ mod tests {
         for [low, high] in [[1.9, 2.0], [0.2, 0.3]] {
             let from_aside = observed_limit([low * predicted, high * predicted]);
             assert!((from_aside / about - 1.0).abs() < 2e-3, "{from_aside} for {about}");
+        }
+    }
+
+    #[test]
+    fn where_points_deform_the_limit_is_that_of_the_runs_of_a_user() {
+        let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
+        let soil = Material {
+            law: Law::LogLinear,
+            porosity: 0.6,
+            hydraulic_conductivity: 1e-3,
+            ..Material::default()
+        };
+        let shortening = -(1.0_f64 - 0.3).ln();
+        let column = Column { load: shortening * soil.oedometric_modulus(), ..Column::default() };
+        // Points that cross cells fail before the predicted step.
+        for (name, least, most) in [("TL-GC-SRI-patch", 0.97, 1.05), ("MPM", 0.05, 0.97)] {
+            let method = Method::named(name).expect("a known method");
+            let problem =
+                column_problem::<1>(&XIE_LEO, &column, &soil, method, 8, 2).expect("a column");
+            let end = 0.05 / soil.coefficient_of_consolidation();
+            let found =
+                critical_step(&problem, &settings, end, 1 << 18, &|_, _| true).expect("nobody stops it");
+            let share = found.observed.expect("a limit") / found.predicted;
+            assert!((least..=most).contains(&share), "{name}: {share} of {found:?}");
+            let start = predict_for_run(&problem, &settings).critical_step;
+            assert!(
+                found.predicted < 0.95 * start,
+                "{name}: the smallest of the run, {} of {start}",
+                found.predicted
+            );
+            let runs = |share: f64| {
+                let schedule =
+                    Schedule { rule: TimeStep::Stable(share), ..schedule_of(&settings, end, start) };
+                run(problem.clone(), &schedule, &|_, _| true).status == RunStatus::Ok
+            };
+            assert_eq!([0.95, 1.1].map(|of| runs(of * share)), [true, false], "{name}");
         }
     }
 }
