@@ -3,10 +3,10 @@
 use crate::judge::error_place::place_in_kept;
 use crate::judge::verdict::{BELOW, Check, IN, Judgement, Verdict, VerdictOutcome};
 use crate::measure::other_measures::pressure_peak;
-use crate::measure::soundness::is_sound;
+use crate::measure::soundness::{complaints, is_sound};
 use crate::measure::statistics::{larger, largest};
-use crate::record::{Balance, LayerBalance, Record};
-use crate::study::expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange};
+use crate::record::{Balance, LayerBalance, Record, Status};
+use crate::study::expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange, UNSOUND};
 use oedometer_convergence::{Class, Classification};
 use oedometer_soil::wording::{short, typed};
 use std::collections::HashSet;
@@ -150,6 +150,16 @@ fn one_set_found(within: f64, record: &Record, records: &[&Record]) -> Check {
 }
 
 fn status_found(wanted: &str, record: &Record) -> Check {
+    let complaint =
+        if wanted == UNSOUND && record.status == Status::Ok { complaints(record).pop() } else { None };
+    if let Some(complaint) = complaint {
+        return Check {
+            name: "status".to_owned(),
+            pass: true,
+            measured: None,
+            reason: format!("{UNSOUND}: {complaint}"),
+        };
+    }
     let found = record.status.name();
     let how = record
         .status
@@ -179,7 +189,8 @@ fn critical_step_found(within: f64, record: &Record) -> Check {
             Some(failure) => format!("{} is {} at step {}", probe.share, failure.kind.name(), failure.step),
         })
         .collect();
-    let pass = deviation.abs() <= within && found.probes_agree();
+    // Of a difference below the resolution of the search no more is known.
+    let pass = deviation.abs().max(found.within().unwrap_or(0.0)) <= within && found.probes_agree();
     let off = match found.within() {
         Some(resolution) => format!("within {:.2} % of", 100.0 * resolution),
         None => format!("{:+.2} % off", 100.0 * deviation),

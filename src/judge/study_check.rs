@@ -146,8 +146,7 @@ impl StudyCheck {
             other_inputs,
             proposals: proposals(study, paths),
             unsound: notes(&|record| match record.status {
-                // How sound a contender's runs are is a result of the race.
-                Status::Ok if !study.is_race => soundness::complaints(record),
+                Status::Ok if !study.foresees_complaints(record) => soundness::complaints(record),
                 _ => Vec::new(),
             }),
             judgements: judge_paths(study, records, paths, tier),

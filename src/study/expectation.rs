@@ -12,6 +12,9 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::fmt;
 
+/// Status of a case that ends with its results, of which a check fails.
+pub const UNSOUND: &str = "unsound";
+
 /// What is refined along a series.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Axis {
@@ -252,6 +255,11 @@ impl CaseExpectation {
     pub fn foresees(&self, record: &Record) -> bool {
         self.selection.fits(&record.case)
             && self.demand.status.as_ref().is_some_and(|status| *status == record.status.name())
+    }
+
+    /// Whether it says that a record is to end with a failed check.
+    pub fn foresees_complaints(&self, record: &Record) -> bool {
+        self.demand.status.as_deref() == Some(UNSOUND) && self.selection.fits(&record.case)
     }
 }
 

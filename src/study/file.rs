@@ -290,7 +290,7 @@ pub struct ExpectTable {
 pub struct ExpectCaseTable {
     #[serde(skip)]
     pub inputs: Inputs,
-    /// Required end of the case: `ok`, or the name of a failure.
+    /// Required end of the case: `ok`, `unsound` (a check of it fails), or the name of a failure.
     pub status: Typed<String>,
     /// Largest relative difference of observed and predicted critical step.
     pub critical_step_within: Typed<f64>,

@@ -2,6 +2,7 @@
 
 use crate::campaign::case_run::run_case;
 use crate::case::quantity::{Quantity, Sample};
+use crate::measure::soundness::complaints;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
 use crate::study::file::StudySource;
@@ -161,5 +162,30 @@ fn a_cell_that_loses_its_last_point_does_not_end_the_run() {
         (case.cells, case.points_per_cell) = (8, 4);
         let record = run_case(&case, &study.references, Kernel::Fastest, false, &|_, _| true).expect("runs");
         assert_eq!(record.status, Status::Ok, "{}", case.label());
+    }
+}
+
+#[test]
+fn moving_points_whose_stresses_leave_the_balance_are_named() {
+    let halved = "[column]\nstrain = 0.5\n[material]\nporosity = 0.7";
+    for (method, is_named) in [("MPM", true), ("GIMP", false), ("GIMP-SRI-patch", false)] {
+        let sweep = format!(
+            "method = [\"{method}\"]\nintegrator = [\"implicit\"]\ntime_step = [{{ growth = 0.04 }}]\ntime_factors = [1.0]"
+        );
+        let study = study(halved, &sweep).expect("a good study");
+        let mut case = study.planned[0].case.clone();
+        case.cells = 24;
+        let record =
+            run_case(&case, &study.references, Kernel::Fastest, false, &|_, _| true).expect("references");
+        assert_eq!(record.status, Status::Ok, "{method}");
+        let settlement =
+            record.errors.iter().find(|row| row.quantity == Quantity::Settlement).expect("an error").value;
+        assert_eq!(settlement.abs() > 0.05, is_named, "{method}: {settlement}");
+        let complaints = complaints(&record);
+        assert_eq!(
+            complaints.iter().any(|one| one.starts_with("equilibrium")),
+            is_named,
+            "{method}: {complaints:?}"
+        );
     }
 }

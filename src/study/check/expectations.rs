@@ -7,7 +7,7 @@ use crate::study::check::Checker;
 use crate::study::diagnostic::Diagnostic;
 use crate::study::expectation::{
     Axis, Bounds, CaseDemand, CaseExpectation, ErrorRange, Measure, NEXT_FINER, NO_REFERENCE, Selection,
-    SeriesExpectation,
+    SeriesExpectation, UNSOUND,
 };
 use crate::study::file::{ExpectCaseTable, ExpectTable, LevelTable, RangeTable};
 use crate::study::inputs::Inputs;
@@ -125,7 +125,7 @@ impl Checker<'_> {
         subject: &Subject<'_>,
     ) -> Option<CaseExpectation> {
         let before = self.diagnostics.len();
-        let names: Vec<&str> = ["ok"].into_iter().chain(FailureKind::NAMES).collect();
+        let names: Vec<&str> = ["ok", UNSOUND].into_iter().chain(FailureKind::NAMES).collect();
         let status = table
             .status
             .as_ref()

@@ -142,6 +142,12 @@ impl Study {
         self.is_race || self.case_expectations.iter().any(|expectation| expectation.foresees(record))
     }
 
+    /// Whether an expectation says that a check of a record is to fail. How sound a contender's runs are is a result of the race.
+    pub fn foresees_complaints(&self, record: &Record) -> bool {
+        self.is_race
+            || self.case_expectations.iter().any(|expectation| expectation.foresees_complaints(record))
+    }
+
     /// The cases of a tier.
     pub fn cases(&self, tier: Tier) -> Vec<&Case> {
         self.planned.iter().filter(|planned| planned.tier <= tier).map(|planned| &planned.case).collect()
