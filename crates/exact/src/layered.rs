@@ -662,7 +662,7 @@ mod tests {
     fn forty_layers_of_one_soil_are_terzaghis_column() {
         let seed = ColumnParameters::default();
         let terzaghi = Terzaghi::compressible(&seed).unwrap();
-        let column = LayeredColumn::new(1.0, &[(0.025, Material::default()); 40]).unwrap();
+        let column = LayeredColumn::new(1.0, &[(0.025, Material::default()); 40], Drainage::Top).unwrap();
         for time_factor in [1e-4, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0] {
             let expected = terzaghi.fields(time_factor, 0.5).unwrap().pressure;
             let computed = column.fields_after(seed.time(time_factor), 0.5).unwrap().pressure;

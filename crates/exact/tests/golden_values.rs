@@ -7,7 +7,6 @@ use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::large_strain::diffusion::Water;
 use oedometer_exact::parameters::{Base, ColumnParameters, Drainage};
 use oedometer_exact::reference::{Reference, ReferenceKind};
-use oedometer_exact::solution::Solution;
 use oedometer_exact::xie_leo::XieLeo;
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;

@@ -100,7 +100,8 @@ pub fn critical_steps(found: &[CriticalStepFinding]) -> Table {
     Table::of("Critical time step, predicted and observed", columns(header), rows).note(
         "predicted: spectral radius of the step operator on the case's own grid; observed: bisection of runs without the \
          prediction, and in a plane of up to 8 × 8 cells of the eigenvalues of its own step, which show a doubling in \
-         10 000 steps; c: the fastest undamped wave",
+         10 000 steps; where points deform, the smallest predicted of the run and the largest share of it that `solve` runs; c: the \
+         fastest undamped wave",
     )
 }
 

@@ -10,9 +10,10 @@ use oedometer_problem::outcome::{
 use oedometer_problem::snapshot::Snapshot;
 use oedometer_problem::time_step::{Steps, steps_for};
 
-/// Steps after which deforming points are given a new step size, fewer at first: the pores at the drained end close within a
-/// hundred.
+/// Steps after which deforming points are given a new step size: the pores at the drained end close within a hundred.
 const STEP_RENEWAL: u64 = 32;
+/// Share of the critical step beyond which a step is renewed earlier at first: it is beyond the critical one before.
+const NEAR_CRITICAL: f64 = 0.9;
 /// Share of the step that the estimate promises to be accurate enough.
 const SAFETY: f64 = 0.9;
 /// Smallest ratio of a step to the one before.
@@ -126,7 +127,10 @@ impl<'a> Driver<'a> {
             self.sizes.smallest_critical = Some(smallest);
         }
         let row = Steps::Constant(self.sizes.target * reduction).row(self.time, output);
-        EqualSteps { count: row.count.min(Watch::steps_to_look(self.counters.steps, STEP_RENEWAL)), ..row }
+        let is_near = self.sizes.target > NEAR_CRITICAL * self.sizes.predicted_critical;
+        let first =
+            if is_near { Watch::steps_to_look(self.counters.steps, STEP_RENEWAL) } else { STEP_RENEWAL };
+        EqualSteps { count: row.count.min(first), ..row }
     }
 
     /// Makes a row of steps, with a look after every few.
