@@ -194,7 +194,7 @@ impl<'a, const D: usize> SharesOfRuns<'a, D> {
         let steps = steps_to(self.end, step).clamp(OBSERVED_STEPS, self.most_steps.max(OBSERVED_STEPS));
         let end = steps as f64 * step;
         let schedule =
-            Schedule { rule: TimeStep::Stable(share), ..schedule_of(self.settings, end, critical) };
+            Schedule { time_step: TimeStep::Stable(share), ..schedule_of(self.settings, end, critical) };
         let outcome = run(self.problem.clone(), &schedule, self.observer);
         Ok(RunOfShare {
             steps: outcome.counters.steps,
@@ -275,7 +275,7 @@ fn leaves<const D: usize>(
     observer: Observer<'_>,
 ) -> Result<(u64, Option<Failure>), Stopped> {
     let schedule = Schedule {
-        rule: TimeStep::Seconds(step),
+        time_step: TimeStep::Seconds(step),
         // Steps of so many seconds do not depend on the critical one; a failure names their share of it.
         ..schedule_of(settings, steps as f64 * step, predicted)
     };
@@ -288,7 +288,7 @@ fn schedule_of(settings: &ExplicitSettings, end: f64, critical: f64) -> Schedule
     Schedule {
         outputs: vec![end],
         history: Vec::new(),
-        rule: TimeStep::Seconds(critical),
+        time_step: TimeStep::Seconds(critical),
         settings: *settings,
         kernel: Kernel::Fastest,
         integrator: IntegratorKind::Explicit,
@@ -328,8 +328,7 @@ mod tests {
         let settings = ExplicitSettings::default();
         let method = Method::named("GIMP-SRI-patch").expect("a known method");
         let (column, soil) = (Column::default(), Material::default());
-        let problem =
-            column_problem::<1>(&TERZAGHI, &column, &soil, method, 4, 2).expect("a column");
+        let problem = column_problem::<1>(&TERZAGHI, &column, &soil, method, 4, 2).expect("a column");
         let observed_limit = |steps: [f64; 2]| {
             let probes = steps.map(|step| {
                 let (steps, failure) = leaves(&problem, &settings, [step; 2], OBSERVED_STEPS, &|_, _| true)
@@ -362,8 +361,7 @@ mod tests {
         // Points that cross cells fail before the predicted step.
         for (name, least, most) in [("TL-GC-SRI-patch", 0.97, 1.05), ("MPM", 0.05, 0.97)] {
             let method = Method::named(name).expect("a known method");
-            let problem =
-                column_problem::<1>(&XIE_LEO, &column, &soil, method, 8, 2).expect("a column");
+            let problem = column_problem::<1>(&XIE_LEO, &column, &soil, method, 8, 2).expect("a column");
             let end = 0.05 / soil.coefficient_of_consolidation();
             let found =
                 critical_step(&problem, &settings, end, 1 << 18, &|_, _| true).expect("nobody stops it");
@@ -377,7 +375,7 @@ mod tests {
             );
             let runs = |share: f64| {
                 let schedule =
-                    Schedule { rule: TimeStep::Stable(share), ..schedule_of(&settings, end, start) };
+                    Schedule { time_step: TimeStep::Stable(share), ..schedule_of(&settings, end, start) };
                 run(problem.clone(), &schedule, &|_, _| true).status == RunStatus::Ok
             };
             assert_eq!([0.95, 1.1].map(|of| runs(of * share)), [true, false], "{name}");
