@@ -101,7 +101,7 @@ porosity = 0.3 ¦ cohesion = 1e4 ¦ did you mean `undrained_strength`?
 porosity = 0.3 ¦ void_ratio = 1.0 ¦ give the porosity instead, n = e/(1 + e): `porosity`
 porosity = 0.3 ¦ e = 1.0 ¦ give the porosity instead, n = e/(1 + e): `porosity`
 porosity = 0.3 ¦ c_v = 1e-7 ¦ did you mean `coefficient_of_consolidation`?
-porosity = 0.3 ¦ E_oed = 2e6 ¦ it follows from `youngs_modulus` and `poissons_ratio`: E_oed = 1/m_v = E(1 − ν)/((1 + ν)(1 − 2ν))
+porosity = 0.3 ¦ E_oed = 2e6 ¦ did you mean `oedometric_modulus`?
 porosity = 0.3 ¦ G = 2e6 ¦ give `youngs_modulus` and `poissons_ratio` instead: E = 9KG/(3K + G), ν = (3K − 2G)/(6K + 2G)
 porosity = 0.3 ¦ thickness = 5.0 ¦ `height` belongs to [column]: `column.height`
 porosity = 0.3 ¦ ppc = 2 ¦ `points_per_cell` belongs to [[sweep]]: `sweep.points_per_cell`
