@@ -191,7 +191,6 @@ pub use import::SampledState;
 pub use judge::study_check::{CheckEnd, StudyCheck};
 pub use measure::record_checks::{balance_checks, start_checks};
 pub use questions::answers::ReportFindings;
-pub use questions::blocks::checks::RecordChecks;
 pub use questions::study_findings::{AllStudies, StudyFindings};
 pub use questions::study_results::StudyResults;
 pub use race::RaceFindings;

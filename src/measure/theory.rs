@@ -140,14 +140,6 @@ pub fn computed_consolidation(record: &Record) -> Vec<(f64, f64)> {
     record.history.iter().map(|row| (row.time_factor, row.degree_of_consolidation)).collect()
 }
 
-/// Relative L2 error that a constant value a cell must leave at its points, for a field with the
-/// slope of the slowest mode: `(π/2) (h/H) √((1 − 1/m²)/12)` with `m` points per cell.
-pub fn constant_recovery_error(case: &Case) -> f64 {
-    let points = case.points_per_cell as f64;
-    let size = case.cell_size() / case.column.height;
-    std::f64::consts::FRAC_PI_2 * size * ((1.0 - 1.0 / (points * points)) / 12.0).sqrt()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

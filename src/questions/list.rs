@@ -1,17 +1,51 @@
 //! The questions in the order of a reader, and their answers.
 
+use crate::questions::audit::AUDIT;
+use crate::questions::checks::CHECKS;
 use crate::questions::choice::CHOICE;
+use crate::questions::cost::COST;
+use crate::questions::ends::ENDS;
+use crate::questions::fields::FIELDS;
 use crate::questions::finding::{Finding, Place, Question};
+use crate::questions::load_curves::LOAD_CURVES;
 use crate::questions::locking::LOCKING;
+use crate::questions::outside_runs::OUTSIDE_RUNS;
+use crate::questions::paper::PAPER;
+use crate::questions::peers::PEERS;
+use crate::questions::point_sets::POINT_SETS;
+use crate::questions::profiles::PROFILES;
+use crate::questions::setting::SETTING;
 use crate::questions::settlement::SETTLEMENT;
+use crate::questions::stability::STABILITY;
 use crate::questions::study_results::StudyResults;
+use crate::questions::uncertainty::UNCERTAINTY;
+use crate::questions::work::WORK;
 use oedometer_exact::ExactError;
 use rayon::prelude::*;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde_json::json;
 
 /// Every question, in the order of a page.
-pub static QUESTIONS: &[&Question] = &[&CHOICE, &SETTLEMENT, &LOCKING];
+pub static QUESTIONS: &[&Question] = &[
+    &SETTING,
+    &CHOICE,
+    &SETTLEMENT,
+    &COST,
+    &PEERS,
+    &PAPER,
+    &LOCKING,
+    &FIELDS,
+    &LOAD_CURVES,
+    &PROFILES,
+    &WORK,
+    &STABILITY,
+    &ENDS,
+    &UNCERTAINTY,
+    &CHECKS,
+    &OUTSIDE_RUNS,
+    &AUDIT,
+    &POINT_SETS,
+];
 
 /// What studies answer at a place, in the order of the questions.
 ///

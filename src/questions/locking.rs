@@ -1,9 +1,11 @@
 //! Who locks? The errors of every method over Poisson's ratio, where a study sweeps it in the plane.
 
-use crate::questions::comparison::stiffness_sweep::{KEPT, StiffnessSweep, SweepRow, SweptStiffness};
 use crate::questions::finding::{Finding, Part, Place, Question, best};
+use crate::questions::stiffness_sweep::{KEPT, StiffnessSweep, SweepRow};
 use crate::questions::study_results::StudyResults;
+use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size};
 use crate::render::number;
+use crate::render::page::Figure;
 use crate::render::table::{Cell, Mood, Table, columns};
 use oedometer_exact::ExactError;
 use oedometer_soil::wording::typed;
@@ -44,7 +46,7 @@ fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
         if !one.study.scene.locks {
             return Ok(None);
         }
-        let sweep = StiffnessSweep::of(one.study, one.records, SweptStiffness::Skeleton)?;
+        let sweep = StiffnessSweep::new(one.study, one.records)?;
         Ok(sweep.map(|sweep| (sweep.rows.len(), sweep)))
     })?;
     Ok(most.and_then(|(one, sweep)| answer(&one.study.name, &sweep)))
@@ -59,7 +61,11 @@ fn answer(study: &str, sweep: &StiffnessSweep) -> Option<Finding> {
     let kept_methods: Vec<String> = kept.map(|row| row.method.to_string()).collect();
     let (cells, methods, kept) = (sweep.cells, rows.len(), kept_methods.len());
     let facts = Facts { cells, time_factor, kept_within: KEPT, largest_ratio, methods, kept, kept_methods };
-    Some(LOCKING.answer([study], &facts).with(Part::Table(table(&rows, &sweep.values))))
+    let figures = SHOWN.iter().enumerate().map(|(place, shown)| figure(&rows, &sweep.values, place, shown));
+    let table = Part::Table(table(&rows, &sweep.values));
+    let finding = LOCKING.answer([study], &facts).with(table);
+    // Two ratios are no line.
+    Some(if sweep.values.len() > 2 { finding.with(Part::Figures(figures.collect())) } else { finding })
 }
 
 /// Whether a method ran at the largest ratio and lost its result at none.
@@ -100,6 +106,30 @@ fn loss(row: &SweepRow, ratios: &[f64]) -> Cell {
     }
 }
 
+/// What a figure shows of each run: its name, title and axis.
+const SHOWN: [[&str; 3]; 3] = [
+    ["locking-displacement", "Displacement at the nodes", "relative L_2 error (–)"],
+    ["locking-pressure", "Pressure at the points", "relative L_2 error (–)"],
+    ["locking-oscillation", "Oscillation of the pressure", "total variation over the exact one's (–)"],
+];
+
+/// One number of all methods over a ratio spaced as 1 − 2ν; of an oscillation index the ratio of variations.
+fn figure(rows: &[&SweepRow], ratios: &[f64], place: usize, [name, title, label]: &[&str; 3]) -> Figure {
+    let ticks = ratios.iter().map(|ratio| (1.0 - 2.0 * ratio, typed(*ratio)));
+    let x = ChartAxis::log10("Poisson's ratio ν (–), spaced as 1 − 2ν").inverted().with_labelled_ticks(ticks);
+    let mut chart = Chart::new(*title, x, ChartAxis::log10(*label));
+    chart.size = Size::PANEL;
+    let (offset, rule) = if place == 2 { (1.0, (1.0, "theory")) } else { (0.0, (KEPT, "lost")) };
+    for row in rows {
+        let point =
+            |(found, ratio): (&[Option<f64>; 3], &f64)| Some((1.0 - 2.0 * ratio, offset + found[place]?));
+        let points = row.found.iter().zip(ratios).filter_map(point).collect();
+        chart.series.push(Series::new(row.method.to_string(), points));
+    }
+    chart.rules.push(Rule { at: rule.0, label: rule.1.to_owned() });
+    Figure::new(*name, chart, "The line of a method that does not lock stays level.")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -119,13 +149,7 @@ mod tests {
     }
 
     fn found(rows: Vec<SweepRow>) -> Finding {
-        let sweep = StiffnessSweep {
-            stiffness: SweptStiffness::Skeleton,
-            cells: 4,
-            values: vec![0.2, 0.4, 0.49],
-            time_factors: vec![0.1],
-            rows,
-        };
+        let sweep = StiffnessSweep { cells: 4, values: vec![0.2, 0.4, 0.49], time_factors: vec![0.1], rows };
         answer("s", &sweep).expect("methods")
     }
 
@@ -188,6 +212,12 @@ mod tests {
         let rows = &found.tables()[0].rows;
         assert_eq!(rows[0][2..], [0.01, 0.05, 0.02, 0.06].map(Cell::Error));
         assert_eq!(rows[1][4], Cell::missing("no result"));
+        let Some(Part::Figures(figures)) = found.parts.last() else { panic!("{found:?}") };
+        let last = figures.iter().map(|figure| figure.chart.series[0].points[2]);
+        // Oscillation does not count as an error; one of nothing is a ratio of one.
+        let at = 1.0 - 2.0 * 0.49;
+        assert_eq!(last.collect::<Vec<_>>(), [(at, 0.05), (at, 0.06), (at, 10.0)]);
+        assert_eq!(figures[1].chart.series[1].points.len(), 0, "nothing is drawn where nothing was found");
     }
 
     #[test]

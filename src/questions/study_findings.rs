@@ -1,7 +1,6 @@
 //! Everything that a page, a table or a terminal says about a study, as one value: the findings with the verdicts, and the
 //! words that the study brings along. Pages take nothing else.
 
-use crate::campaign::taken_over::TakenOver;
 use crate::case::Task;
 use crate::judge::verdict::Judgement;
 use crate::measure::statistics::larger;
@@ -16,7 +15,6 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// A study with everything that is found about it.
-#[expect(clippy::struct_excessive_bools, reason = "each says whether its page has a part")]
 #[derive(Clone, Debug)]
 pub struct StudyFindings {
     /// Its name.
@@ -33,10 +31,6 @@ pub struct StudyFindings {
     pub question: StudyQuestion,
     /// Whether its page begins with a verdict: a situation of the race is judged by its answer.
     pub shows_verdict: bool,
-    /// Whether its page shows errors over a stiffness: it is of a layer.
-    pub shows_sweeps: bool,
-    /// Whether each run was searched for its critical step and no more.
-    pub is_stability_alone: bool,
     /// The findings that are written beside its page.
     pub plain: Findings,
     /// What it answers by itself.
@@ -49,8 +43,6 @@ pub struct StudyFindings {
     pub passes: bool,
     /// Records that cannot be right: the case and a sentence.
     pub unsound: Vec<(String, String)>,
-    /// Results that were there before, as sentences.
-    pub taken_over: Vec<String>,
     /// What seems to be wrong with the results of other programs, as sentences.
     pub diagnoses: Vec<String>,
     /// What made its records.
@@ -118,15 +110,12 @@ impl StudyFindings {
             has_page: results.has_page,
             question: StudyQuestion::new(study),
             shows_verdict: !study.is_race || !check.judgements.is_empty() || !check.meets_all(),
-            shows_sweeps: study.scene.body.is_plane() && !study.is_race,
-            is_stability_alone: records.iter().all(|record| record.stability.is_some()),
             plain: Findings::new(results, &answers)?,
             answers,
             judgements: check.judgements.clone(),
             met: check.met(),
             passes: check.meets_all(),
             unsound: check.unsound.iter().map(|note| (note.case.clone(), note.sentence.clone())).collect(),
-            taken_over: TakenOver::sentences(&check.taken_over),
             diagnoses: check.diagnoses.clone(),
             origins,
         })

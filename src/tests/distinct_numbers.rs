@@ -1,23 +1,14 @@
 //! Tables and figures of records in which every number is another one: each cell has the number that its column names.
 
 use crate::campaign::runner::records_of;
-use crate::case::planned::Tier;
 use crate::case::quantity::Norm;
 use crate::golden::compare::{Change, Difference};
-use crate::judge::outside_runs::{OutsideRunFinding, outside_runs};
-use crate::questions::blocks::checks::RecordChecks;
-use crate::questions::blocks::stability::critical_steps;
-use crate::questions::blocks::timing::timed_runs;
-use crate::questions::blocks::work::WorkFinding;
-use crate::questions::study_results::StudyResults;
+use crate::judge::outside_runs::{OutsideRunFinding, outside_runs as all_outside_runs};
+use crate::questions::{outside_runs, stability};
 use crate::record::csv::tidy::{header_line, rows_of};
 use crate::record::{CriticalStep, Record, WallSample};
-use crate::render::page::Block;
 use crate::render::table::{Cell, Table};
-use crate::report::blocks::runs::cost;
-use crate::report::tables::{golden_changes, measures, runs};
-use crate::study::check::Study;
-use crate::study::file::StudySource;
+use crate::report::tables::{explanation, golden_changes, measures};
 
 /// A column of no unit number: height, load, stiffness, density and gravity are another each, and so are the ratios of its
 /// meshes.
@@ -156,7 +147,7 @@ fn every_error_stands_under_its_time_beside_its_reference_quantity_and_sample() 
 #[test]
 fn every_check_and_group_has_its_own_number() {
     for record in records() {
-        let table = measures::checks_table(&record, &RecordChecks::new(&record));
+        let table = measures::checks_table(&record);
         let (start, last) = (record.start.expect("a start"), *record.balance.last().expect("an output"));
         let expected = [
             ("points at the start", Cell::Count(start.points as u64)),
@@ -190,7 +181,7 @@ fn critical_steps_spreads_and_phases_stand_under_their_names() {
         combined_limit: 0.023,
         ..CriticalStep::default()
     });
-    let table = runs::critical_steps(&critical_steps(&[record.clone()]));
+    let table = stability::table(&[record.clone()]);
     for (header, value) in [
         ("predicted", Cell::Error(0.011)),
         ("observed", Cell::Error(0.013)),
@@ -260,68 +251,6 @@ fn every_column_of_the_tidy_table_is_the_field_of_its_name() {
 }
 
 #[test]
-fn cost_and_the_figure_of_error_over_work_have_the_numbers_of_their_cases() {
-    let source = StudySource { name: "distinct.toml".to_owned(), text: STUDY.to_owned() };
-    let study = Study::check(&source).expect("a sound study");
-    let records = records();
-    let results = StudyResults::new(&study, &records, Tier::Full);
-    let error_of = |record: &Record| {
-        let meant = record.errors.iter().find(|row| {
-            (row.quantity.name(), row.sample.name(), row.norm) == ("pressure", "points", Norm::L2)
-                && row.reference == "terzaghi"
-                && row.time_factor == 0.3
-        });
-        meant.expect("measured").value
-    };
-    let (mut tables, mut figures) = (0, 0);
-    for block in cost::work_blocks("s", &WorkFinding::new(&results).expect("errors"), &timed_runs(&results))
-        .expect("filled")
-    {
-        match block {
-            Block::Table(table) => {
-                tables += 1;
-                assert_eq!(table.rows.len(), records.len());
-                for (place, record) in records.iter().enumerate() {
-                    let mut wall: Vec<f64> = record.wall.iter().map(|sample| sample.seconds).collect();
-                    wall.sort_by(f64::total_cmp);
-                    let updates = record.counters.point_updates as f64;
-                    for (header, cell) in [
-                        ("case", Cell::Code(record.case.label())),
-                        ("error", Cell::Error(error_of(record))),
-                        ("steps", Cell::Count(record.counters.steps)),
-                        ("point updates", Cell::Count(record.counters.point_updates)),
-                        ("wall, median", Cell::Seconds(wall[1])),
-                        ("spread", Cell::Text(format!("{:.3} … {:.3} s, 3 runs", wall[0], wall[2]))),
-                        ("a point and step", Cell::Number(1e9 * wall[1] / updates)),
-                    ] {
-                        assert_eq!(
-                            *under(&table, place, header),
-                            cell,
-                            "{header} of {}",
-                            record.case.label()
-                        );
-                    }
-                }
-            }
-            Block::Figure(figure) => {
-                figures += 1;
-                let mut points: Vec<(f64, f64)> =
-                    figure.chart.series.iter().flat_map(|series| series.points.iter().copied()).collect();
-                let mut expected: Vec<(f64, f64)> = records
-                    .iter()
-                    .map(|record| (record.counters.point_updates as f64, error_of(record)))
-                    .collect();
-                points.sort_by(|a, b| a.0.total_cmp(&b.0));
-                expected.sort_by(|a, b| a.0.total_cmp(&b.0));
-                assert_eq!(points, expected, "work on the x axis, the error over it");
-            }
-            _ => {}
-        }
-    }
-    assert_eq!((tables, figures), (1, 1));
-}
-
-#[test]
 fn times_of_an_attached_run_are_the_least_and_the_median_and_the_processor_s_own() {
     let mut record = records().remove(0);
     record = record.made_outside(crate::record::AttachedRun::default());
@@ -331,7 +260,7 @@ fn times_of_an_attached_run_are_the_least_and_the_median_and_the_processor_s_own
     for (sample, (seconds, cpu)) in record.wall.iter_mut().zip([(3.0, 2.5), (41.0, 40.5), (2.0, 1.5)]) {
         (sample.seconds, sample.cpu_seconds) = (seconds, Some(cpu));
     }
-    let table = runs::attached_table(&outside_runs(std::slice::from_ref(&record))).expect("one run");
+    let table = outside_runs::table(&all_outside_runs(std::slice::from_ref(&record)));
     for (header, cell) in [
         ("wall, least", Cell::Seconds(2.0)),
         ("wall, median", Cell::Seconds(3.0)),
@@ -341,7 +270,7 @@ fn times_of_an_attached_run_are_the_least_and_the_median_and_the_processor_s_own
     ] {
         assert_eq!(*under(&table, 0, header), cell, "{header}");
     }
-    let notes = runs::attached_notes(&record, OutsideRunFinding::new(&record).as_ref()).join("\n");
+    let notes = explanation::attached_notes(&record, OutsideRunFinding::new(&record).as_ref()).join("\n");
     for said in [
         "wall time at least 2 s, median 3 s of 3 runs",
         "processor 2.5 s",

@@ -11,10 +11,8 @@ use crate::judge::study_check::{CheckEnd, StudyCheck};
 use crate::judge::verdict::{Beside, Verdict, judge};
 use crate::measure::record_checks::worst_of;
 use crate::measure::soundness;
-use crate::questions::answers::paper::largest_pressure_error;
-use crate::questions::blocks::checks::RecordChecks;
-use crate::questions::comparison::stability_map::maps_of;
-use crate::questions::comparison::work_precision::{WorkPrecision, mapped_soils, worst_error};
+use crate::questions::paper::largest_pressure_error;
+use crate::questions::timed_runs::{WorkPrecision, worst_error};
 use crate::record::{Balance, LayerBalance, Record, Status, WallSample};
 use crate::render::table::Cell;
 use crate::report::tables::measures::checks_table;
@@ -22,11 +20,10 @@ use crate::study::check::Study;
 use crate::study::expectation::{Bounds, CaseDemand, CaseExpectation, Selection};
 use crate::study::file::StudySource;
 use oedometer_convergence::{ErrorBound, ErrorSeries, SeriesDemand};
-use oedometer_problem::critical_step::CriticalStep;
 use oedometer_problem::outcome::{Failure, FailureKind};
 
 fn table_of_checks(record: &Record) -> Vec<Vec<Cell>> {
-    checks_table(record, &RecordChecks::new(record)).rows
+    checks_table(record).rows
 }
 
 const REFERENCE: &str = "terzaghi";
@@ -180,12 +177,6 @@ fn the_cheapest_is_chosen_by_the_worst_of_all_outputs() {
             record.wall = vec![WallSample { seconds, alone: true, ..WallSample::default() }; 2];
         }
         for turn in 0..2 {
-            let soils = mapped_soils(&records, REFERENCE, &[]);
-            assert_eq!(soils.len(), 4);
-            assert!(
-                soils.iter().all(|soil| soil.cheapest().is_some_and(|way| way.cells == 8)),
-                "output {place}"
-            );
             let precision = WorkPrecision::of(&records, REFERENCE, &[]).expect("timed runs");
             let cheapest = precision.cheapest[0].run.as_ref().expect("within a percent");
             assert_eq!((cheapest.record.case.cells, cheapest.error), (8, 1e-3), "output {place}");
@@ -195,28 +186,6 @@ fn the_cheapest_is_chosen_by_the_worst_of_all_outputs() {
             );
             records.reverse();
         }
-    }
-}
-
-#[test]
-fn the_largest_deviation_of_a_map_is_found_in_any_case() {
-    let all = records_of(&text("cells = [4]\nporosity = [0.3, 0.35, 0.4]", ""));
-    for place in 0..3 {
-        let mut records = all.clone();
-        for (number, record) in records.iter_mut().enumerate() {
-            let observed = Some(if number == place { 1.3 } else { 1.01 });
-            record.stability = Some(CriticalStep {
-                predicted: 1.0,
-                observed,
-                wave_limit: 2.0,
-                drag_limit: 2.0,
-                combined_limit: 2.0,
-                ..CriticalStep::default()
-            });
-        }
-        let map = maps_of(&records).remove(0);
-        assert!((map.largest_deviation - 0.3).abs() < 1e-12, "{place}: {}", map.largest_deviation);
-        assert_eq!(map.curves[0].points.len(), 3);
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::campaign::runner::records_of;
 use crate::case::Case;
 use crate::measure::other_measures::SPURIOUS_VELOCITY;
-use crate::measure::theory::{constant_recovery_error, known_reference, theory_isochrones};
+use crate::measure::theory::{known_reference, theory_isochrones};
 use crate::record::Record;
 use crate::record::csv::tidy;
 use crate::study::check::Study;
@@ -44,13 +44,6 @@ fn a_theory_line_begins_at_the_drained_surface_and_falls_with_time() {
     assert_eq!(early[0], (0.0, 0.0));
     assert!((early[100].0 - 1.0).abs() < 0.01 && (early[100].1 - 1.0).abs() < 1e-15);
     assert!(late[100].0 < early[100].0);
-}
-
-#[test]
-fn the_error_of_a_constant_in_a_cell_is_that_of_the_oracle() {
-    // Two points at a quarter of the cell from its centre: offset h/4, slope π/2.
-    let expected = std::f64::consts::FRAC_PI_2 * 0.1 * 0.25;
-    assert!((constant_recovery_error(&seed_case()) - expected).abs() < 1e-15);
 }
 
 #[test]

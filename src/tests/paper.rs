@@ -10,23 +10,18 @@ fn every_number_of_the_paper_s_example_is_one_of_the_committed_findings() {
     let (example, _) = example.split_once("\n# ").expect("more sections");
     let mut example = example.split_whitespace().collect::<Vec<_>>().join(" ");
     let findings: Value = serde_json::from_str(include_str!("../../report/findings.json")).expect("JSON");
-    let audit = &findings["audit"];
-    let pairing = |printed: bool, law: &str, continuity: &str| {
-        let pairings = audit["pairings"].as_array().expect("pairings");
-        let mut matching =
-            pairings.iter().filter(|pairing| pairing["is_printed"] == printed && pairing["law"] == law);
-        matching.find(|pairing| pairing["continuity"] == continuity).expect("a pairing")["largest"].clone()
-    };
-    let as_printed = pairing(true, "porosity-dependent", "constant-porosity-gradient");
-    let conservative = pairing(false, "log-linear", "conservative");
-    let error = |largest: &Value| largest["error"].as_f64().expect("an error");
+    let mut answers = findings["findings"].as_array().expect("answers").iter();
+    let audit = answers.find(|one| one["question"] == "audit").expect("an audit");
+    let number = |key: &str| audit["facts"][key].as_f64().expect(key);
+    let mut pairings = audit["tables"][0]["rows"].as_array().expect("pairings").iter();
+    let conservative = pairings.find(|row| row[0] == "log-linear, conservative").expect("a pairing");
     for sentence in [
         format!(
             "Xie and Leo by {:+.1} % at $T_v = {}$",
-            100.0 * error(&as_printed),
-            as_printed["time_factor"]
+            100.0 * number("printed_error"),
+            number("printed_time_factor")
         ),
-        format!("agrees within {} %.", short(100.0 * error(&conservative).abs())),
+        format!("agrees within {} %.", short(100.0 * conservative[1].as_f64().expect("an error").abs())),
     ] {
         assert!(example.contains(&sentence), "{sentence}\nis not in\n{example}");
         example = example.replace(&sentence, "");

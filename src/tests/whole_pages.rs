@@ -5,7 +5,6 @@ use crate::campaign::runner::records_of;
 use crate::golden::{GoldenError, GoldenFile};
 use crate::judge::study_check::StudyCheck;
 use crate::judge::verdict::differing_repeats;
-use crate::questions::blocks::checks::RecordChecks;
 use crate::questions::study_findings::AllStudies;
 use crate::record::{Record, WallSample};
 use crate::study::check::Study;
@@ -402,12 +401,7 @@ fn measures_of_single_runs_are_told_as_they_were() {
     for study_text in [MESH, STEP, STIFF, LAYER, FOOTING, LARGE, SETS, FAILING] {
         for record in records(study_text).iter().step_by(5) {
             let label = record.case.label();
-            writeln!(
-                text,
-                "## {label}\n{}",
-                measures::table_of(record, &RecordChecks::new(record)).expect("a table")
-            )
-            .expect("memory");
+            writeln!(text, "## {label}\n{}", measures::table_of(record).expect("a table")).expect("memory");
         }
     }
     assert_snapshot("measures_of_runs", &without_round_off(&text));

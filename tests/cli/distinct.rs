@@ -336,7 +336,7 @@ fn figures_over_the_mesh_and_over_work_have_the_points_of_their_cases() {
 #[test]
 fn checks_and_references_are_the_worst_of_all_runs() {
     let reported = &*REPORTED;
-    let (_, rows) = tables(reported, "distinct").pop().expect("a table of checks");
+    let (_, rows) = table(&reported.path("studies/tables/distinct-checks.csv"));
     let worst = |value: &dyn Fn(&Record) -> Vec<f64>| {
         reported.records.iter().flat_map(value).fold(0.0, |worst: f64, value| worst.max(value.abs()))
     };
@@ -402,7 +402,7 @@ fn checks_and_references_are_the_worst_of_all_runs() {
 #[test]
 fn critical_steps_stand_beside_their_cases_in_table_and_figure() {
     let reported = &*REPORTED;
-    let (header, rows) = tables(reported, "steps").remove(0);
+    let (header, rows) = table(&reported.path("studies/tables/steps-critical-steps.csv"));
     assert_eq!(header[1..5], ["predicted (s)", "observed (s)", "difference", "over h/c"]);
     assert_eq!(rows.len(), reported.steps.len());
     let of = |method: &str, conductivity: f64| {

@@ -3,9 +3,9 @@
 
 use crate::program::call;
 use oedometer::{
-    FailureKind, Kernel, Quantity, Record, RecordChecks, RunOptions, Sample, Status, Study, StudyResults,
-    StudySource, Tier, balance_checks, measures, render_markdown, run_case, run_study, soundness,
-    start_checks, study_page,
+    FailureKind, Kernel, Quantity, Record, RunOptions, Sample, Status, Study, StudyResults, StudySource,
+    Tier, balance_checks, measures, render_markdown, run_case, run_study, soundness, start_checks,
+    study_page,
 };
 use oedometer_soil::material::Material;
 use std::path::Path;
@@ -118,7 +118,7 @@ fn every_check_that_shows_a_mark_can_fail_and_spoils_the_record() {
             let mut one = sound.clone();
             spoil(&mut one);
             assert_eq!(soundness::complaints(&one).len(), 1, "{index}");
-            let table = measures::checks_table(&one, &RecordChecks::new(&one)).to_text().expect("a table");
+            let table = measures::checks_table(&one).to_text().expect("a table");
             assert_eq!(table.matches("| ✗").count(), 1, "{index}: {table}");
         }
     }

@@ -1,4 +1,4 @@
-//! Expectations that `check` and `report` propose to a study that has none.
+//! Expectations that `check` proposes to a study that has none.
 
 use crate::program::{call, folder_with};
 use oedometer::{CheckEnd, GoldenError, Record, RunOptions, Study, StudyCheck, StudySource, Tier, run_study};
@@ -64,12 +64,7 @@ fn pasted_as_they_are_they_are_met_and_a_worse_solver_fails_them() {
 }
 
 #[test]
-fn the_report_shows_them_and_a_study_with_expectations_gets_none() {
-    let folder = folder_with(&study(MESHES));
-    let told = call(folder.path(), &["report", "short.toml", "--out", "report"]);
-    assert_eq!(told.code, 0, "{}{}", told.out, told.err);
-    let page = fs::read_to_string(folder.path().join("report/studies/short.html")).expect("a page");
-    assert!(page.contains("<pre><code>[[expect]]\nmethod = &quot;GC-SRI-patch&quot;\n"), "no lines to paste");
+fn a_study_with_expectations_gets_none() {
     let with_one = study(MESHES) + "\n[[expect_case]]\nstatus = \"ok\"\n";
     assert!(checked(&with_one, |_| {}).proposals.is_empty());
 }

@@ -5,8 +5,7 @@
 
 use crate::program::assert_snapshot;
 use oedometer::{
-    AllStudies, Answers, Block, GoldenFile, GoldenKey, Making, Page, Provenance, Record, RecordChecks,
-    ReportFindings, RunOptions, Study, StudyCheck, StudyResults, StudySource, Table, Tier, WallSample,
+    AllStudies, Answers, Block, GoldenFile, GoldenKey, Making, Page, Provenance, Record, ReportFindings, RunOptions, Study, StudyCheck, StudyResults, StudySource, Table, Tier, WallSample,
     answer_page, figures, junit, measures, render_html, render_markdown, run_study, study_page, values_of,
     verdicts,
 };
@@ -139,10 +138,7 @@ fn the_answer_page_answers_from_records_and_asks_nothing_else() {
 #[test]
 fn the_table_of_one_case_reads_as_it_did() {
     let (_, records) = small_study();
-    assert_snapshot(
-        "solve_table",
-        &measures::table_of(&records[4], &RecordChecks::new(&records[4])).expect("a table"),
-    );
+    assert_snapshot("solve_table", &measures::table_of(&records[4]).expect("a table"));
 }
 
 #[test]

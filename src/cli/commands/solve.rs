@@ -12,7 +12,6 @@ use crate::cli::progress::note_on_solve;
 use crate::cli::study_files::tell_warnings;
 use crate::measure::record::record_of;
 use crate::measure::soundness;
-use crate::questions::blocks::checks::RecordChecks;
 use crate::questions::finding::Place;
 use crate::questions::findings::study_answers::StudyAnswers;
 use crate::questions::list;
@@ -127,7 +126,7 @@ fn print_one(record: &Record, format: SolveFormat) -> anyhow::Result<()> {
     match format {
         SolveFormat::Csv => print_data(&csv_of(ERROR_COLUMNS, csv_rows(record))?),
         SolveFormat::Json => print_data(&json_of(&SolveJson::of(record))?),
-        SolveFormat::Table => print_data(&measures::table_of(record, &RecordChecks::new(record))?),
+        SolveFormat::Table => print_data(&measures::table_of(record)?),
     }
 }
 

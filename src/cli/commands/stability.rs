@@ -6,9 +6,8 @@ use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{SolveFormat, csv_of, json_of, print_data};
 use crate::cli::running::jobs_of;
 use crate::cli::study_files::tell_warnings;
-use crate::questions::blocks::stability::critical_steps;
+use crate::questions::stability;
 use crate::record::{Probe, Record};
-use crate::report::tables::runs;
 use crate::study::check::Purpose;
 use crate::study::overrides::{Assignments, StudyLines, TIMING, toml_of};
 use oedometer_problem::critical_step::CriticalStep;
@@ -63,7 +62,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     match arguments.format {
         SolveFormat::Table => {
-            print_data(&(runs::critical_steps(&critical_steps(&report.records)).to_text()? + "\n"))?;
+            print_data(&(stability::table(&report.records).to_text()? + "\n"))?;
         }
         SolveFormat::Csv => print_data(&csv_of(COLUMNS, report.records.iter().flat_map(rows_of))?)?,
         SolveFormat::Json => {

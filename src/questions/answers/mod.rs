@@ -1,11 +1,7 @@
 //! What the records of all studies answer, as plain data: one value per question of a reader. Numbers, names and choices of a
 //! fixed list, no sentence; `findings.json` beside the report has them, and templates make sentences of them.
 
-pub mod audit;
 pub mod converges;
-pub mod cost;
-pub mod double_point;
-pub mod paper;
 pub mod time_step;
 
 use crate::case::{Quantity, Sample};
@@ -35,10 +31,6 @@ pub struct ReportFindings {
     /// The race to 1 %: whole in `tables/race.csv`, its answers among the findings.
     #[serde(skip)]
     pub race: Option<RaceFindings>,
-    /// What does accuracy cost?
-    pub cost: Option<cost::CostFinding>,
-    /// Does it reproduce the paper?
-    pub paper: Option<paper::PaperFinding>,
     /// The answers to the questions that are files of their own.
     #[serde(default, deserialize_with = "unread")]
     #[schemars(schema_with = "list::schema")]
@@ -47,10 +39,6 @@ pub struct ReportFindings {
     pub converges: Option<converges::ConvergesFinding>,
     /// What does the time step change?
     pub time_step: Option<time_step::TimeStepFinding>,
-    /// Are the published equations right?
-    pub audit: Option<audit::AuditFinding>,
-    /// One set of material points, or two?
-    pub double_point: Option<double_point::DoublePointFinding>,
     /// Whether everything is as expected.
     pub verdict: VerdictFinding,
 }
@@ -63,13 +51,9 @@ impl ReportFindings {
     pub fn new(results: &[StudyResults<'_>]) -> Result<Self, ExactError> {
         Ok(Self {
             race: RaceFindings::from_studies(results.iter().map(|one| (one.study, one.records))),
-            cost: cost::CostFinding::new(results),
-            paper: paper::PaperFinding::new(results)?,
             findings: list::answers(results, Place::Report)?,
             converges: converges::ConvergesFinding::new(results),
             time_step: time_step::TimeStepFinding::new(results),
-            audit: audit::AuditFinding::new(results),
-            double_point: double_point::DoublePointFinding::new(results),
             verdict: VerdictFinding::new(results),
         })
     }

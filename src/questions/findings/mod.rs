@@ -12,7 +12,6 @@ pub mod within;
 use crate::case::Tier;
 use crate::judge::verdict::{Judgement, VerdictOutcome};
 use crate::questions::blocks::StudyBlocks;
-use crate::questions::comparison::stiffness_sweep::{StiffnessSweep, SweptStiffness};
 use crate::questions::finding::{Finding, Place, unread};
 use crate::questions::findings::study_answers::StudyAnswers;
 use crate::questions::list;
@@ -48,8 +47,6 @@ pub struct Findings {
     pub runs: Vec<RunFinding>,
     /// Every error over every axis that the study refines, from two levels on.
     pub series: Vec<SeriesFinding>,
-    /// The error of each method over what makes the soil hard to compress, where the study sweeps it.
-    pub stiffness: Vec<StiffnessFinding>,
     /// For each quantity and bound the cheapest choice of method, mesh and step within it.
     pub within: Vec<QuantityWithin>,
     /// The answers to the questions that are files of their own.
@@ -57,9 +54,6 @@ pub struct Findings {
     #[schemars(schema_with = "list::schema")]
     #[expect(clippy::struct_field_names, reason = "a key of findings.json")]
     pub findings: Vec<Finding>,
-    /// Expectations that the results meet, as TOML, of a study without any.
-    #[serde(default)]
-    pub proposals: Vec<String>,
     /// What the other blocks of the study's page print.
     #[serde(default)]
     pub blocks: StudyBlocks,
@@ -131,50 +125,6 @@ pub struct FailureFinding {
     pub time: f64,
 }
 
-/// What makes a soil hard to compress.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
-pub enum Swept {
-    /// `K_w/E` of the water.
-    #[serde(rename = "K_w/E")]
-    Water,
-    /// Poisson's ratio of the skeleton.
-    #[serde(rename = "nu")]
-    Skeleton,
-}
-
-/// A method over one stiffness at one time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct StiffnessFinding {
-    /// What varies.
-    pub swept: Swept,
-    /// Method.
-    pub method: String,
-    /// Cells over the height.
-    pub cells: usize,
-    /// Time factor.
-    pub time_factor: f64,
-    /// Errors at each value, ascending.
-    pub values: Vec<StiffnessValue>,
-    /// The first value at which displacement or pressure is off by a tenth or more; a failed run is no such value.
-    pub lost_from: Option<f64>,
-}
-
-/// Errors at one value of a stiffness.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct StiffnessValue {
-    /// The value.
-    pub value: f64,
-    /// Relative L2 error of the nodal displacement.
-    pub displacement: Option<f64>,
-    /// Relative L2 error of the pressure at the points.
-    pub pressure: Option<f64>,
-    /// Total variation of the pressure over the exact one's, minus one.
-    #[serde(default)]
-    pub oscillation: Option<f64>,
-    /// How the run failed, with its step.
-    pub failed: Option<String>,
-}
-
 impl Findings {
     /// Everything about a study, from its records and verdicts and what it answers by itself.
     ///
@@ -182,10 +132,6 @@ impl Findings {
     /// When a reference refuses a case.
     pub fn new(results: &StudyResults<'_>, answers: &StudyAnswers) -> Result<Self, ExactError> {
         let StudyResults { study, records, paths, check, .. } = results;
-        let mut stiffness = Vec::new();
-        for swept in SweptStiffness::ALL {
-            stiffness.extend(StiffnessSweep::of(study, records, swept)?.iter().flat_map(of_sweep));
-        }
         // The page of a race has answers of its own in their place.
         let within = if study.is_race { within::within(study, records) } else { answers.within.clone() };
         Ok(Self {
@@ -197,11 +143,9 @@ impl Findings {
             expectations: check.judgements.iter().map(ExpectationFinding::new).collect(),
             runs: records.iter().map(RunFinding::new).collect(),
             series: series::all_series(study, paths),
-            stiffness,
             within,
             findings: list::answers(std::slice::from_ref(results), Place::Study)?,
-            proposals: check.proposals.clone(),
-            blocks: StudyBlocks::new(results)?,
+            blocks: StudyBlocks::new(results),
         })
     }
 }
@@ -249,39 +193,10 @@ impl RunFinding {
     }
 }
 
-fn of_sweep(sweep: &StiffnessSweep) -> Vec<StiffnessFinding> {
-    let swept = match sweep.stiffness {
-        SweptStiffness::Water => Swept::Water,
-        SweptStiffness::Skeleton => Swept::Skeleton,
-    };
-    let of_row = |row: &crate::questions::comparison::stiffness_sweep::SweepRow| {
-        let value = |(place, value): (usize, &f64)| {
-            let [displacement, pressure, oscillation] = row.found[place];
-            StiffnessValue {
-                value: *value,
-                displacement,
-                pressure,
-                oscillation,
-                failed: row.failed[place].clone(),
-            }
-        };
-        StiffnessFinding {
-            swept,
-            method: row.method.to_string(),
-            cells: sweep.cells,
-            time_factor: row.time_factor,
-            values: sweep.values.iter().enumerate().map(value).collect(),
-            lost_from: row.lost_from().map(|place| sweep.values[place]),
-        }
-    };
-    sweep.rows.iter().map(of_row).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::campaign::runner::{failed_at, solved};
-    use crate::questions::comparison::stiffness_sweep::SweepRow;
 
     /// Two meshes and one time, the least that answers anything: every error is in the findings once, a failed run is told
     /// with its reason and is within no bound, and what is read is what was written.
@@ -302,41 +217,8 @@ mod tests {
         let two = |one: &&SeriesFinding| one.levels.len() == 2 && one.class == Class::NotEvaluable;
         assert!(found.series.iter().filter(two).count() >= 8, "two levels have no class but errors");
         let json = serde_json::to_string(&found).expect("plain data");
+        // Answers are asked anew, not read.
+        let found = Findings { findings: Vec::new(), ..found };
         assert_eq!(serde_json::from_str::<Findings>(&json).expect("what was written"), found);
-    }
-
-    #[test]
-    fn every_number_of_a_stiffness_sweep_stands_under_its_name() {
-        let method =
-            crate::case::SolverName::Own(oedometer_problem::method::Method::named("VP").expect("a method"));
-        let row = SweepRow {
-            method,
-            time_factor: 0.25,
-            found: vec![[Some(0.01), Some(0.02), Some(0.03)], [Some(0.04), Some(0.5), Some(0.06)], [None; 3]],
-            failed: vec![None, None, Some("unstable at step 7".to_owned())],
-        };
-        for (stiffness, swept) in
-            [(SweptStiffness::Water, Swept::Water), (SweptStiffness::Skeleton, Swept::Skeleton)]
-        {
-            let (values, rows) = (vec![0.1, 0.2, 0.3], vec![row.clone()]);
-            let found =
-                of_sweep(&StiffnessSweep { stiffness, cells: 8, values, time_factors: vec![0.25], rows });
-            let value = |value, displacement, pressure, oscillation, failed: Option<&str>| StiffnessValue {
-                value,
-                displacement,
-                pressure,
-                oscillation,
-                failed: failed.map(str::to_owned),
-            };
-            let values = vec![
-                value(0.1, Some(0.01), Some(0.02), Some(0.03), None),
-                value(0.2, Some(0.04), Some(0.5), Some(0.06), None),
-                value(0.3, None, None, None, Some("unstable at step 7")),
-            ];
-            let method = "VP".to_owned();
-            let right =
-                StiffnessFinding { swept, method, cells: 8, time_factor: 0.25, values, lost_from: Some(0.2) };
-            assert_eq!(found, [right]);
-        }
     }
 }

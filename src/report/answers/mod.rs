@@ -3,16 +3,12 @@
 //!
 //! Every number comes from the findings. A question that the records do not answer is not put.
 
-mod audit;
 mod converges;
-mod double_point;
-mod paper;
 pub(crate) mod race;
 
 pub use race::matrix_page;
 
 use crate::history::comparison::StudyComparison;
-use crate::questions::answers::cost::CostFinding;
 use crate::questions::answers::time_step::TimeStepFinding;
 use crate::questions::answers::{ReportFindings, VerdictFinding};
 use crate::questions::finding::{Finding, Place};
@@ -20,10 +16,9 @@ use crate::questions::sentence;
 use crate::questions::study_findings::AllStudies;
 use crate::record::provenance::Provenance;
 use crate::render::RenderError;
-use crate::render::page::{Block, Callout, Figure, Page, Section};
+use crate::render::page::{Block, Callout, Page, Section};
 use crate::render::table::{Mood, Table};
 use crate::report::blocks::answers as study_answers;
-use crate::report::blocks::runs::cost;
 use crate::report::history_tables::comparison_tables;
 use crate::report::sections::{links_to, section};
 use oedometer_soil::wording::count_of;
@@ -143,14 +138,15 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, RenderError> {
     let race = findings.race.as_ref().filter(|race| !race.situations.is_empty());
     let all = [
         race.map(|race| race::section(race, findings)).transpose()?,
-        findings.cost.as_ref().map(cost_section).transpose()?,
-        findings.paper.as_ref().map(paper::section).transpose()?,
+        found(findings, "cost").map(|finding| section(finding, Place::Report)).transpose()?,
+        found(findings, "peers").map(|finding| section(finding, Place::Report)).transpose()?,
+        found(findings, "paper").map(|finding| section(finding, Place::Report)).transpose()?,
         answers.changes.map(changes_section).transpose()?,
         found(findings, "locking").map(|finding| section(finding, Place::Report)).transpose()?,
         findings.converges.as_ref().map(converges::section).transpose()?,
         findings.time_step.as_ref().map(time_step_section).transpose()?,
-        findings.audit.as_ref().map(audit::section).transpose()?,
-        findings.double_point.as_ref().map(double_point::section).transpose()?,
+        found(findings, "audit").map(|finding| section(finding, Place::Report)).transpose()?,
+        found(findings, "point-sets").map(|finding| section(finding, Place::Report)).transpose()?,
     ];
     let mut sections: Vec<Section> = all.into_iter().flatten().collect();
     // A small report names its studies, as perhaps no answer links to them.
@@ -194,18 +190,6 @@ fn verdict(verdict: &VerdictFinding) -> Result<Callout, RenderError> {
     let passes = verdict.failing.is_empty();
     let mood = if verdict.expectations == 0 && passes { Mood::Note } else { Mood::of(passes) };
     Ok((mood, sentence::sentence("verdict", verdict)?))
-}
-
-/// The cheapest run within each tolerance, all timed runs in a figure, and other programs.
-fn cost_section(cost: &CostFinding) -> Result<Section, RenderError> {
-    let question = Question { heading: "What does accuracy cost?", id: "cost" };
-    let sentence = sentence::sentence("cost", cost)?;
-    let (chart, caption) = (cost::chart_of(&cost.wall_time), cost::caption(&cost.wall_time)?);
-    let mut blocks = vec![Block::Figure(Figure::new("readme-cost", chart, caption))];
-    if let Some(peers) = &cost.peers {
-        blocks.push(Block::Paragraph(sentence::sentence("peers", peers)?));
-    }
-    Ok(question.answered(&sentence, [cost.study.as_str()], blocks))
 }
 
 /// The order in the step, and what the step leaves of the error.

@@ -6,7 +6,6 @@ use crate::questions::choice::{
     LARGEST_TAU, SHOWN, cheapest, dot_plot, facts, family_table, places_of, practice, reason_words, words_of,
 };
 use crate::questions::finding::Finding;
-use crate::questions::published_equations::PublishedEquations;
 use crate::questions::sentence;
 use crate::questions::words::capitalised;
 use crate::race::RaceFindings;
@@ -78,30 +77,21 @@ fn trust(race: &RaceFindings, findings: &ReportFindings) -> Vec<String> {
         "{} of {} [expectations](#expected) met; the race's numbers are pinned by golden values, not by expectations",
         verdict.met, verdict.expectations
     )];
-    if let Some(printed) = findings.paper.as_ref().and_then(|paper| paper.printed.as_ref()) {
-        points.push(printed_words(printed));
-    }
-    if findings.cost.as_ref().is_some_and(|cost| cost.peers.is_some()) {
-        points.push("other programs solve [the same column](#cost)".to_owned());
+    let printed = found(findings, "paper").and_then(|paper| paper.facts["printed_settlement"].as_f64());
+    points.extend(printed.map(|off| {
+        format!(
+            "the paper's equations as printed settle {:+.1} % in the end beside Xie & Leo's: [the audit](#paper)",
+            100.0 * off
+        )
+    }));
+    if found(findings, "peers").is_some() {
+        points.push("other programs solve [the same column](#peers)".to_owned());
     }
     let turns = facts(race).turns();
     if !turns.is_empty() {
         points.push(format!("the choice turns with {turns}: [where it holds]({PAGE}#answers)"));
     }
     points
-}
-
-/// How far the printed equations are from the solution that they are compared with.
-fn printed_words(printed: &PublishedEquations) -> String {
-    let settlements = printed.departures.iter().map(|one| one.settlement);
-    let (least, most) = settlements
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), one| (low.min(one), high.max(one)));
-    let signed = |share: f64| format!("{}{:.1} %", if share < 0.0 { "−" } else { "+" }, 100.0 * share.abs());
-    format!(
-        "the paper's equations as printed settle {} to {} beside Xie & Leo's, before any mesh: [the audit](#paper)",
-        signed(least),
-        signed(most)
-    )
 }
 
 /// Every answer with where it holds.

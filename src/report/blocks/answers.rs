@@ -4,6 +4,7 @@
 use crate::questions::finding::Place;
 use crate::questions::findings::QuantityWithin;
 use crate::questions::sentence;
+use crate::questions::setting::SETTING;
 use crate::questions::study_findings::StudyFindings;
 use crate::render::RenderError;
 use crate::render::page::Block;
@@ -15,8 +16,9 @@ use serde::Serialize;
 /// # Errors
 /// If a template cannot be filled.
 pub fn lead(study: &StudyFindings) -> Result<String, RenderError> {
-    let mut lead = match &study.plain.blocks.setting {
-        Some(setting) => sentence::sentence("setting", setting)? + "\n\n",
+    let setting = study.plain.findings.iter().find(|finding| finding.question == &SETTING);
+    let mut lead = match setting {
+        Some(setting) => setting.sentence()? + "\n\n",
         None => String::new(),
     };
     lead += &within(&study.answers.within)?;
@@ -43,7 +45,7 @@ pub fn within(quantities: &[QuantityWithin]) -> Result<String, RenderError> {
 /// If a template cannot be filled.
 pub fn blocks(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
     let mut blocks = Vec::new();
-    for finding in &study.plain.findings {
+    for finding in study.plain.findings.iter().filter(|finding| finding.question != &SETTING) {
         blocks.push(Block::Heading(finding.question.heading.to_owned()));
         blocks.extend(sections::blocks(finding, Place::Study)?);
     }
@@ -53,11 +55,8 @@ pub fn blocks(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::records_of;
     use crate::case::{Quantity, Sample};
-    use crate::questions::blocks::setting::SettingFinding;
     use crate::questions::findings::within::{BoundWithin, WithinFinding};
-    use crate::record::Record;
 
     #[test]
     fn a_quantity_is_told_with_method_mesh_step_and_time_or_with_the_least_error() {
@@ -107,47 +106,5 @@ mod tests {
             "**Settlement**: no run reaches 1 %. The smallest error is 2.00 %, of `GC-SRI-patch`, implicit, \
              on 10 cells."
         );
-    }
-
-    fn setting_of(records: &[Record]) -> String {
-        let setting = SettingFinding::new(records);
-        setting.map_or(String::new(), |setting| sentence::sentence("setting", &setting).expect("filled"))
-    }
-
-    #[test]
-    fn a_clay_is_told_in_kilopascals_millimetres_and_days() {
-        let study = |soil: &str| {
-            let text = format!(
-                "title = 't'\nscene = 'terzaghi'\n[column]\nheight = 5.0\nload = 50e3\n[output]\ntime_factors = [0.1]\n\
-                 [[sweep]]\nmethod = ['MPM']\nintegrator = ['implicit']\ncells = [4]\nhydraulic_conductivity = [1e-9]\n{soil}\n"
-            );
-            setting_of(&records_of(&text))
-        };
-        // m_v q H = 5e4/1.2e6 · 5 m; H² γ_w/(k E_oed) = 25 · 9810/(1e-9 · 1.2e6) s.
-        assert_eq!(
-            study(""),
-            "*H* = 5 m, *q* = 50 kPa, *E* = 1 MPa, *ν* = 0.25, *n* = 0.3, *k* = 1e-9 m/s, *K_w* = 2.2 GPa: the surface settles \
-             by 208.3 mm in the end; T_v = 1 is 6.5 years."
-        );
-        let several = study("youngs_modulus = [5e5, 1e6]");
-        assert!(several.contains("*E* = 500 kPa … 1 MPa"), "{several}");
-        assert!(
-            several.contains("208.3 mm … 416.7 mm") && several.contains("6.5 years … 13 years"),
-            "{several}"
-        );
-        assert_eq!(setting_of(&[]), "");
-    }
-
-    #[test]
-    fn layers_are_told_by_what_differs_among_them() {
-        let records = records_of(
-            "title = 't'\nscene = 'layered'\noutput.time_factors = [0.1]\ncolumn.height = 3.0\n[[column.soils]]\nthickness = 1.0\n\
-             youngs_modulus = 2e6\n[[column.soils]]\nthickness = 2.0\nyoungs_modulus = 5e6\n[[sweep]]\nmethod = ['GIMP']\n\
-             integrator = ['implicit']\ncells = [3]\n",
-        );
-        let told = setting_of(&records);
-        let layers =
-            "*K_w* = 2.2 GPa; layers from the base up: 1 m with *E* = 2 MPa; 2 m with *E* = 5 MPa: T_v = 1";
-        assert!(told.contains(layers) && told.matches("*E*").count() == 2, "{told}");
     }
 }

@@ -1,9 +1,7 @@
 //! The expectations of a study on its page: the verdict in its box, those that are not met, and all with their reasons.
 
 use crate::judge::verdict::Judgement;
-use crate::questions::sentence;
 use crate::questions::study_findings::StudyFindings;
-use crate::render::RenderError;
 use crate::render::page::{Block, Callout};
 use crate::render::table::Mood;
 use crate::report::checks::verdicts::judgements_table;
@@ -12,9 +10,6 @@ use std::fmt::Write;
 
 /// Reasons in the red box before the rest is only counted.
 const MOST_REASONS: usize = 5;
-
-/// Proposed expectations that stand open on the page.
-const MOST_OPEN: usize = 4;
 
 /// Whether everything is as expected, and the reasons if not.
 pub fn verdict(study: &StudyFindings) -> Callout {
@@ -56,25 +51,12 @@ pub fn unmet(study: &StudyFindings) -> Vec<Block> {
     vec![Block::Heading("Not as expected".to_owned()), Block::Table(table)]
 }
 
-/// The expectations that a study could have, and every one that it has behind a click.
-pub fn all(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
-    let mut blocks = vec![Block::Heading("Expectations".to_owned())];
-    let proposed = &study.plain.proposals;
-    if !proposed.is_empty() {
-        blocks.push(Block::Paragraph(sentence::sentence("proposed", &())?));
-        let whole = Block::Code(proposed.join("\n"));
-        blocks.push(if proposed.len() > MOST_OPEN {
-            Block::Details { summary: format!("The {} expectations", proposed.len()), blocks: vec![whole] }
-        } else {
-            whole
-        });
-    }
-    if !study.judgements.is_empty() {
-        let all: Vec<_> = study.judgements.iter().collect();
-        blocks.push(Block::Details {
-            summary: "Every expectation, with the reason for its verdict".to_owned(),
-            blocks: vec![Block::Table(judgements_table("Expectations", &all))],
-        });
-    }
-    Ok(blocks)
+/// Every expectation of the study behind a click.
+pub fn all(study: &StudyFindings) -> Vec<Block> {
+    let all: Vec<_> = study.judgements.iter().collect();
+    let each = (!all.is_empty()).then(|| Block::Details {
+        summary: "Every expectation, with the reason for its verdict".to_owned(),
+        blocks: vec![Block::Table(judgements_table("Expectations", &all))],
+    });
+    std::iter::once(Block::Heading("Expectations".to_owned())).chain(each).collect()
 }

@@ -2,12 +2,9 @@
 
 pub(crate) mod answers;
 mod expectations;
-pub(crate) mod fields;
 pub mod index_page;
-mod maps;
 pub mod race;
 pub(crate) mod refinement;
-pub(crate) mod runs;
 pub mod study_page;
 
 use crate::render::chart::Chart;

@@ -3,20 +3,17 @@
 use crate::questions::study_findings::StudyFindings;
 use crate::render::RenderError;
 use crate::render::page::{Block, Page, Section, slug};
-use crate::report::blocks::{answers, expectations, fields, maps, race, refinement, runs};
+use crate::report::blocks::{answers, expectations, race, refinement};
 
 /// A part of the page: its blocks, or none where the findings have nothing for it.
 type Part = fn(&StudyFindings) -> Result<Vec<Block>, RenderError>;
 
 /// The parts in the order of the page, after what is not as expected.
-const PARTS: [Part; 7] = [
+const PARTS: [Part; 4] = [
     |study| Ok(race::blocks(study)),
     answers::blocks,
-    maps::cheapest_methods,
-    fields::blocks,
     refinement::blocks,
-    runs::blocks,
-    expectations::all,
+    |study| Ok(expectations::all(study)),
 ];
 
 /// The page of a study.

@@ -4,9 +4,10 @@ use crate::campaign::taken_over::TakenOver;
 use crate::golden::compare::{CaseChange, Change, Difference};
 use crate::judge::study_check::{CheckEnd, StudyCheck};
 use crate::judge::verdict::{Judgement, VerdictOutcome};
-use crate::questions::finding::{Finding, Part};
+use crate::questions::finding::{Finding, Part, Place};
 use crate::questions::findings::study_answers::StudyAnswers;
 use crate::questions::sentence;
+use crate::questions::uncertainty;
 use crate::render::marked_text::paragraphs;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
@@ -14,7 +15,6 @@ use crate::report::blocks::answers::within;
 use crate::report::checks::{TITLES, failures_of};
 use crate::report::tables::convergence;
 use crate::report::tables::golden_changes::{self, judgement_of, summary};
-use crate::report::tables::uncertainties;
 use oedometer_soil::wording::count_of;
 use std::fmt::Write;
 
@@ -38,7 +38,7 @@ pub fn text_of(check: &StudyCheck, file: Option<&str>, answers: &str) -> Result<
     text += &text_of_failures(check);
     text += &text_of_changes(check);
     text += answers;
-    if let Some(table) = uncertainties::table_of(&check.judgements) {
+    if let Some(table) = uncertainty::table_of(&check.judgements) {
         text += &items_of(&table);
     }
     text += &text_of_proposals(check, file)?;
@@ -78,7 +78,7 @@ pub fn text_of_answers(answers: &StudyAnswers, findings: &[Finding]) -> Result<S
         let _ = write!(text, "\n{heading}\n{}", convergence::table_of_finest(finest).to_text()?);
     }
     text += &plain_paragraphs(&within(&answers.within)?);
-    for finding in findings {
+    for finding in findings.iter().filter(|finding| finding.question.stands_at(Place::Terminal)) {
         text += &plain_paragraphs(&finding.sentence()?);
         text += &text_of_parts(finding, &finding.parts)?;
     }
@@ -282,7 +282,7 @@ fn tables_of(check: &StudyCheck) -> Vec<Table> {
             failures.into_iter().map(|one| vec![Cell::Code(one.subject.to_owned()), one.sentence.into()]);
         tables.push(Table::of(title, columns("subject | how"), rows));
     }
-    tables.extend(uncertainties::table_of(&check.judgements));
+    tables.extend(uncertainty::table_of(&check.judgements));
     if !check.differences().is_empty() {
         tables.push(golden_changes::differences_table(check.differences()));
         tables.push(golden_changes::changes_table(&check.changes));

@@ -2,11 +2,12 @@
 
 use crate::case::quantity::Quantity;
 use crate::judge::explanation::{Carrier, Explanation, LevelSeries};
+use crate::judge::outside_runs::OutsideRunFinding;
 use crate::record::Record;
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
 use crate::report::tables::golden_changes::differences_table;
-use crate::report::tables::runs::attached_notes;
+use oedometer_soil::wording::{count_of, short};
 
 /// Places of the errors, levels and changes of a case.
 pub fn tables_of(record: &Record, explanation: &Explanation) -> Vec<Table> {
@@ -80,6 +81,47 @@ fn carriers_table(record: &Record, explanation: &Explanation) -> Table {
     table.notes(attached_notes(record, explanation.outside_run.as_ref()))
 }
 
+/// Sentences on the run of an attached solver: how it failed, what it is, what it took; none for other cases.
+pub fn attached_notes(record: &Record, found: Option<&OutsideRunFinding>) -> Vec<String> {
+    let (Some(about), Some(found)) = (record.outside_run(), found) else { return Vec::new() };
+    let mut notes: Vec<String> = record.status.failure().map(ToString::to_string).into_iter().collect();
+    let version = about.version.as_ref().map_or(String::new(), |version| format!(", version {version}"));
+    notes.push(if about.command.is_empty() {
+        "read from existing files; nothing was run".to_owned()
+    } else {
+        format!("run by `{}`{version}", about.command.join(" "))
+    });
+    notes.extend(times(found));
+    let most = about.repeats_differ_by;
+    notes.extend(most.map(|most| format!("results of its repeats differ by at most {}", short(most))));
+    notes.extend(about.notes.iter().cloned());
+    notes.extend(about.taken.iter().map(|taken| format!("taken: {taken}")));
+    notes
+}
+
+/// Wall times with processor time, memory and load.
+fn times(found: &OutsideRunFinding) -> Option<String> {
+    let (least, median) = found.least_wall.zip(found.median_wall)?;
+    let mut parts = vec![
+        format!(
+            "wall time at least {} s, median {} s of {}",
+            short(least),
+            short(median),
+            count_of(found.timed, "run", "runs")
+        ),
+        found.processor.map_or("the system does not report processor time".to_owned(), |seconds| {
+            format!("processor {} s", short(seconds))
+        }),
+        found.memory.map_or("the system does not report memory".to_owned(), |megabytes| {
+            format!("memory at most {} MB", short(megabytes))
+        }),
+    ];
+    parts.extend(found.reported.map(|seconds| format!("{} s by its own account", short(seconds))));
+    parts.extend(found.load.map(|load| format!("load of the machine {}", short(load))));
+    parts.extend(found.busy.then(|| "the machine was busy or it waited: compare processor times".to_owned()));
+    Some(parts.join(", "))
+}
+
 fn levels_table(first: &Carrier, series: &LevelSeries) -> Table {
     let rows = series.labels.iter().zip(&series.errors).enumerate().map(|(place, (label, error))| {
         let own = place == series.own;
@@ -111,6 +153,8 @@ mod tests {
     use crate::golden::compare::{Change, Difference};
     use crate::judge::error_place::ErrorPlace;
     use crate::record::ErrorRow;
+    use crate::record::{AttachedRun, Status, WallSample};
+    use oedometer_problem::outcome::{Failure, FailureKind};
 
     #[test]
     fn every_number_of_a_carrier_stands_under_its_name() {
@@ -190,5 +234,49 @@ mod tests {
         assert_eq!(main, [&Cell::Percent(0.02), &Cell::Percent(0.02), &Cell::Error(0.02)]);
         assert!(table.title.ends_with(" (unstable at step 7)"), "{}", table.title);
         assert!(table.notes[0].starts_with("relative errors against terzaghi, "), "{:?}", table.notes);
+    }
+
+    #[test]
+    fn a_run_of_a_solver_is_told_with_its_command_and_what_the_system_does_not_tell() {
+        let sample = |seconds: f64, cpu: Option<f64>, load: f64| WallSample {
+            seconds,
+            cpu_seconds: cpu,
+            load: Some(load),
+            ..WallSample::default()
+        };
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+                    integrator = ['implicit']\ncells = [2]\n";
+        let notes_of = |record: &Record| attached_notes(record, OutsideRunFinding::new(record).as_ref());
+        let mut record = crate::campaign::runner::records_of(text).remove(0);
+        assert_eq!(notes_of(&record), [""; 0]);
+        record.outside = Some(AttachedRun::default());
+        let mut failed = record.clone();
+        let (kind, reason) = (FailureKind::TimedOut, "why".to_owned());
+        failed.status = Status::Failed(Failure { kind, step: 0, time: 0.0, growth: None, reason });
+        record.wall = vec![sample(5.0, Some(2.0), 3.0), sample(6.0, Some(2.5), 1.5)];
+        failed.wall = vec![sample(1.0, None, 0.5)];
+        let about = record.outside.as_mut().expect("another program's");
+        (about.command, about.version) = (["sh", "{case}"].map(str::to_owned).into(), Some("2.1".to_owned()));
+        (about.repeats_differ_by, about.notes) = (Some(1e-9), vec!["a note".to_owned()]);
+        about.taken = vec!["p from pressure".to_owned()];
+        assert_eq!(
+            notes_of(&record),
+            [
+                "run by `sh {case}`, version 2.1",
+                "wall time at least 5 s, median 5.5 s of 2 runs, processor 2.25 s, the system does not report memory, load of \
+                 the machine 3, the machine was busy or it waited: compare processor times",
+                "results of its repeats differ by at most 1e-9",
+                "a note",
+                "taken: p from pressure"
+            ]
+        );
+        let notes = notes_of(&failed);
+        assert!(
+            notes[0].contains("why") && notes[1] == "read from existing files; nothing was run",
+            "{notes:?}"
+        );
+        let told = "wall time at least 1 s, median 1 s of 1 run, the system does not report processor time, the system does not \
+                    report memory, load of the machine 0.5";
+        assert_eq!(notes[2..], [told]);
     }
 }

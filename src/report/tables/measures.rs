@@ -1,9 +1,11 @@
 //! Tables of one record.
 
 use crate::case::quantity::{Norm, Quantity, Sample};
-use crate::questions::blocks::checks::{RecordChecks, WorstCheck};
+use crate::measure::record_checks::worst_of;
+use crate::measure::soundness;
+use crate::questions::checks::{bound_cell, groups_of};
 use crate::record::Record;
-use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
+use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
 use oedometer_problem::outcome::Failure;
 use std::fmt::Write;
@@ -12,9 +14,9 @@ use std::fmt::Write;
 ///
 /// # Errors
 /// If a table cannot be written.
-pub fn table_of(record: &Record, found: &RecordChecks) -> Result<String, RenderError> {
+pub fn table_of(record: &Record) -> Result<String, RenderError> {
     let mut text = errors_table(record).to_text()?;
-    let _ = write!(text, "\n{}", checks_table(record, found).to_text()?);
+    let _ = write!(text, "\n{}", checks_table(record).to_text()?);
     Ok(text)
 }
 
@@ -89,30 +91,21 @@ fn work_note(record: &Record) -> String {
 }
 
 /// Start checks, worst balances over all outputs, and dimensionless groups of a record; checks with their bounds.
-pub fn checks_table(record: &Record, found: &RecordChecks) -> Table {
+pub fn checks_table(record: &Record) -> Table {
     let mut rows: Vec<Vec<Cell>> = Vec::new();
     let mut add = |name: &str, value: Cell, bound: Cell| rows.push(vec![name.into(), value, bound]);
     if let Some(start) = &record.start {
         add("points at the start", Cell::Count(start.points as u64), "".into());
     }
-    for check in &found.checks {
-        add(&check.what, Cell::Error(check.value.0), bound_cell(check));
+    for check in worst_of([record]) {
+        add(check.what, Cell::Error(check.value), bound_cell(&check));
     }
     for row in record.measures.iter().filter(|row| row.time_factor.is_none()) {
         add(&row.name, format!("{:.7}", row.found).into(), format!("exactly {:.7}", row.exact).into());
     }
-    for group in &found.groups {
-        add(&group.what, Cell::Error(group.value), "".into());
+    for (what, value) in groups_of(record) {
+        add(what, Cell::Error(value), "".into());
     }
     Table::of("checks and groups", columns("what | > value | bound"), rows)
-        .notes(found.complaints.iter().map(|one| format!("✗ {one}")))
-}
-
-/// The bound of a check with the mark of its judgement.
-pub fn bound_cell(check: &WorstCheck) -> Cell {
-    match check.bound {
-        Some(bound) => Cell::Verdict(Mood::of(check.holds), format!("≤ {}", number::error(bound))),
-        None if check.unjudged.is_empty() => Cell::Text("not judged".to_owned()),
-        None => Cell::Text(format!("not judged: {}", check.unjudged)),
-    }
+        .notes(soundness::complaints_of_run(record).into_iter().map(|one| format!("✗ {one}")))
 }

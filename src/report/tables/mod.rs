@@ -4,6 +4,4 @@ pub mod convergence;
 pub mod explanation;
 pub mod golden_changes;
 pub mod measures;
-pub mod runs;
 pub mod scores;
-pub mod uncertainties;

@@ -1,0 +1,203 @@
+//! What does accuracy cost in time? Timed runs by error and wall time, and the cheapest within each tolerance.
+
+use crate::case::IntegratorKind;
+use crate::case::grouping::distinct;
+use crate::questions::finding::{Finding, Part, Place, Question, best};
+use crate::questions::study_results::StudyResults;
+use crate::questions::timed_runs::WorkPrecision;
+use crate::questions::words;
+use crate::render::chart::{Chart, ChartAxis, Naming, PointName, Series, Size, slots};
+use crate::render::page::Figure;
+use crate::render::table::{Cell, Table, columns};
+use oedometer_exact::ExactError;
+
+/// What does accuracy cost?
+pub static COST: Question = Question {
+    id: "cost",
+    heading: "What does accuracy cost?",
+    template: include_str!("cost.md"),
+    places: &[Place::Study, Place::Report],
+    facts: |schemas| schemas.subschema_for::<Facts>(),
+    ask,
+};
+
+/// Every number and name of the sentence.
+#[derive(serde::Serialize, schemars::JsonSchema)]
+struct Facts {
+    /// The widest tolerance of the pressure at the points, relative L2, at every output.
+    tolerance: f64,
+    /// Label of the cheapest run within it.
+    run: Option<String>,
+    /// Median of its wall times, s.
+    seconds: Option<f64>,
+    /// Whether a finer mesh stays within it too.
+    is_confirmed: bool,
+    /// How far the same run, timed twice, differs in this session.
+    noise: Option<f64>,
+}
+
+/// The study with most timed runs, and these.
+///
+/// # Errors
+/// None of its own.
+pub fn timed_study<'b, 'a>(
+    studies: &'b [StudyResults<'a>],
+) -> Result<Option<(&'b StudyResults<'a>, WorkPrecision<'a>)>, ExactError> {
+    best(studies, |one| {
+        let Some(reference) = one.study.references.first().filter(|_| one.study.timing_repeats > 1) else {
+            return Ok(None);
+        };
+        let precision = WorkPrecision::of(one.records, reference.name(), &one.study.case_expectations);
+        Ok(precision.map(|precision| (precision.runs.len(), precision)))
+    })
+}
+
+fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
+    Ok(timed_study(studies)?.and_then(|(one, precision)| answer(&one.study.name, &precision)))
+}
+
+const CAPTION: &str = "Colour: method; marker: integrator. Each line joins the runs that no other run of the same two beats in both \
+                       time and error. Wall time: median over repeats.";
+
+fn answer(study: &str, precision: &WorkPrecision<'_>) -> Option<Finding> {
+    let widest = precision.cheapest.first()?;
+    let facts = Facts {
+        tolerance: widest.tolerance,
+        run: widest.run.as_ref().map(|run| run.record.case.label()),
+        seconds: widest.run.as_ref().map(|run| run.wall.median),
+        is_confirmed: widest.is_confirmed,
+        noise: precision.noise_floor,
+    };
+    let figure = Figure::new("cost", chart(precision), CAPTION);
+    let parts = COST.answer([study], &facts).with(Part::Figures(vec![figure]));
+    Some(parts.with(Part::Table(table(precision))))
+}
+
+/// Factor on the longest time up to which the axis goes.
+const ROOM_FOR_NAMES: f64 = 5.0;
+
+/// A line per method and integrator over its best runs; names stand at the ends of the lines.
+fn chart(precision: &WorkPrecision<'_>) -> Chart {
+    let mut chart = Chart::new(
+        "Error against wall time",
+        ChartAxis::log10("wall time (s)"),
+        ChartAxis::log10("error of the pore pressure, worst of the outputs (–)"),
+    );
+    chart.size = Size { width: 1000.0, plot_height: 460.0, equal_units: false };
+    chart.naming = Naming::Hover;
+    let fronts = precision.fronts();
+    let methods = distinct(fronts.iter().map(|front| front.method.to_string()));
+    let names: Vec<&str> = methods.iter().map(String::as_str).collect();
+    let slots = slots(&names);
+    for front in &fronts {
+        let method = front.method.to_string();
+        let place = methods.iter().position(|other| *other == method).unwrap_or_default();
+        let marker = IntegratorKind::ALL.iter().position(|kind| *kind == front.integrator);
+        let name = format!("{method}, {}", front.integrator.name());
+        let points = front.runs.iter().map(|run| (run.wall.median, run.error)).collect();
+        let series = Series::new(name, points);
+        add_named(&mut chart, series.slot(slots[place]).marker(marker.unwrap_or_default()));
+    }
+    // Room for the names right of the last points.
+    let times = || chart.series.iter().flat_map(|series| &series.points).map(|(seconds, _)| *seconds);
+    let (least, most) = (times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));
+    if least < most {
+        chart.x = chart.x.between(0.8 * least, ROOM_FOR_NAMES * most);
+    }
+    chart
+}
+
+/// Adds a series with its name at the end of its line.
+fn add_named(chart: &mut Chart, series: Series) {
+    let last = series.points.last().copied();
+    chart.names.extend(last.map(|at| PointName { at, name: series.name.clone() }));
+    chart.series.push(series);
+}
+
+fn table(precision: &WorkPrecision<'_>) -> Table {
+    let rows = precision.cheapest.iter().map(|cheapest| {
+        let mut row = vec![Cell::Percent(cheapest.tolerance)];
+        row.extend(cheapest.run.iter().flat_map(|run| {
+            let (case, counters) = (&run.record.case, &run.record.counters);
+            let counted = |work: u64| words::counted(Some(work).filter(|_| case.counts_work()));
+            [
+                Cell::Code(case.label()),
+                Cell::Error(run.error),
+                Cell::Number(1e3 * run.wall.median),
+                Cell::Number(1e3 * run.wall.deviation),
+                counted(counters.steps),
+                counted(counters.point_updates),
+                if cheapest.is_confirmed { "yes" } else { "no" }.into(),
+            ]
+        }));
+        row.resize(8, Cell::missing("no timed run reaches the tolerance"));
+        row
+    });
+    let header = "> tolerance | run | > error | > wall, median [ms] | > ± deviation [ms] | > steps | > point updates | finer mesh within it";
+    Table::of("The cheapest run within a tolerance", columns(header), rows).file("cost").note(
+        "error of the pore pressure at the points, relative L2, the worst of the outputs; wall times of runs that had the \
+         machine to themselves, in rounds over all runs",
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::measure::statistics::WallSpread;
+    use crate::questions::timed_runs::{Cheapest, TimedRun};
+
+    #[test]
+    fn every_number_of_the_wall_times_stands_under_its_name() {
+        let records = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.2]\n[[sweep]]\nmethod = ['GIMP', 'MPM']\n\
+             integrator = ['implicit']\ncells = [4]\n",
+        );
+        let run = |place: usize, median: f64, error: f64| TimedRun {
+            record: &records[place],
+            error,
+            wall: WallSpread { count: 5, median, deviation: 0.0013, minimum: 0.009, maximum: 0.041 },
+        };
+        let (cheapest, other) = (run(0, 0.011, 0.0071), run(1, 0.023, 0.0092));
+        let precision = WorkPrecision {
+            cheapest: vec![
+                Cheapest { tolerance: 1e-2, run: Some(cheapest.clone()), is_confirmed: true },
+                Cheapest { tolerance: 1e-3, run: None, is_confirmed: false },
+            ],
+            runs: vec![cheapest, other],
+            noise_floor: Some(0.07),
+        };
+        let (label, counters) = (records[0].case.label(), &records[0].counters);
+        let found = answer("s", &precision).expect("timed runs");
+        assert_eq!(
+            found.sentence().expect("a sentence"),
+            format!(
+                "A pressure within 1 % at every output takes 11.0 ms: `{label}`. Timed twice in this session, the same run \
+                 differs by 7 %."
+            )
+        );
+        let table = found.tables()[0];
+        let expected = [
+            Cell::Percent(1e-2),
+            Cell::Code(label),
+            Cell::Error(0.0071),
+            Cell::Number(11.0),
+            Cell::Number(1.3),
+            Cell::Count(counters.steps),
+            Cell::Count(counters.point_updates),
+            "yes".into(),
+        ];
+        assert_eq!(table.rows[0], expected);
+        assert!(matches!(table.rows[1][1..], [Cell::Missing(_), ..]), "{:?}", table.rows[1]);
+        let chart = chart(&precision);
+        let series =
+            |place: usize| (chart.series[place].name.as_str(), chart.series[place].points.as_slice());
+        assert_eq!(series(0), ("GIMP, implicit", &[(0.011, 0.0071)][..]));
+        assert_eq!(series(1), ("MPM, implicit", &[(0.023, 0.0092)][..]));
+        assert_ne!(chart.series[0].slot, chart.series[1].slot, "a colour per method");
+        assert_eq!(chart.series[0].marker, chart.series[1].marker, "a marker per integrator");
+        let ends: Vec<_> = chart.series.iter().map(|series| (series.points.last(), &series.name)).collect();
+        let names: Vec<_> = chart.names.iter().map(|named| (Some(&named.at), &named.name)).collect();
+        assert_eq!(names, ends, "a name at the end of each line");
+    }
+}

@@ -1,0 +1,164 @@
+//! What does a footing carry? Load over the settlement of the plate, on the finest of the meshes that most methods have run.
+
+use crate::case::Quantity;
+use crate::case::grouping::grouped;
+use crate::questions::finding::{Finding, Part, Place, Question};
+use crate::questions::study_results::StudyResults;
+use crate::record::{Record, Status};
+use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
+use crate::render::page::Figure;
+use oedometer_exact::footing::LOAD_FACTOR;
+
+/// What does a footing carry?
+pub static LOAD_CURVES: Question = Question {
+    id: "load-curves",
+    heading: "What does the footing carry?",
+    template: include_str!("load_curves.md"),
+    places: &[Place::Study],
+    facts: |schemas| schemas.subschema_for::<Facts>(),
+    ask: |studies| Ok(ask(studies)),
+};
+
+/// Every number and name of the sentence.
+#[derive(serde::Serialize, schemars::JsonSchema)]
+struct Facts {
+    /// Methods with a run on the mesh.
+    methods: usize,
+    /// Cells under the plate.
+    cells: usize,
+    /// What keeps the soil undrained.
+    undrained: String,
+    /// The exact collapse load over width and strength, `2 + π`.
+    exact: f64,
+    /// Methods whose load stays below so much of it.
+    kept_methods: Vec<String>,
+    /// How much.
+    kept_below: f64,
+}
+
+/// Top of the figure, over the exact collapse load; the line of a method that locks leaves it.
+const HIGHEST: f64 = 2.5;
+/// A method keeps the collapse load where its largest load is below so much of it.
+const KEPT_BELOW: f64 = 1.1;
+
+/// All runs kept undrained as in the study's first case.
+fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
+    let [one] = studies else { return None };
+    let undrained = one.records.first()?.case.column.footing.undrained;
+    let is_drawn = |record: &&Record| {
+        one.study.scene.measures(Quantity::LoadFactor)
+            && !one.study.is_race
+            && record.status == Status::Ok
+            && record.case.column.footing.undrained == undrained
+    };
+    let of_methods = grouped(one.records.iter().filter(is_drawn), |record| record.case.method.to_string());
+    let has = |own: &[&Record], cells: usize| own.iter().any(|record| record.case.cells == cells);
+    let methods_on = |cells: usize| of_methods.iter().filter(|(_, own)| has(own, cells)).count();
+    let meshes = of_methods.iter().flat_map(|(_, own)| own.iter().map(|record| record.case.cells));
+    let cells = meshes.max_by_key(|cells| (methods_on(*cells), *cells))?;
+    let mut chart = Chart::new(
+        "Load and settlement of the plate",
+        ChartAxis::linear("settlement over the width u/B (–)"),
+        ChartAxis::linear("load factor F/(B c_u) (–)").between(0.0, HIGHEST * LOAD_FACTOR),
+    );
+    chart.size = Size::PANEL;
+    // The place of a method among all of the study is its colour.
+    for (place, (method, own)) in of_methods.iter().enumerate() {
+        if let Some(record) = own.iter().find(|record| record.case.cells == cells) {
+            let points = record.history.iter().filter_map(|row| Some((row.time_factor, row.load_factor?)));
+            let series = Series::new(method.as_str(), points.collect());
+            chart.series.push(series.style(Style::Line).slot(place));
+        }
+    }
+    let is_kept = |series: &&Series| series.points.iter().all(|(_, load)| *load < KEPT_BELOW * LOAD_FACTOR);
+    let facts = Facts {
+        methods: chart.series.len(),
+        cells,
+        undrained: undrained.name().to_owned(),
+        exact: LOAD_FACTOR,
+        kept_methods: chart.series.iter().filter(is_kept).map(|series| series.name.clone()).collect(),
+        kept_below: KEPT_BELOW - 1.0,
+    };
+    let ends = chart.series.iter().flat_map(|series| &series.points).map(|(settlement, _)| *settlement);
+    let end = ends.fold(0.0, f64::max);
+    chart.series.push(Series::theory("2 + π", vec![(0.0, LOAD_FACTOR), (end, LOAD_FACTOR)]));
+    let figure = Figure::new(
+        "load-settlement",
+        chart,
+        "The line of a method that locks leaves the figure at its top.",
+    );
+    Some(LOAD_CURVES.answer([one.study.name.as_str()], &facts).with(Part::Figures(vec![figure])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::{failed_at, records_of, study_of};
+    use crate::case::planned::Tier;
+    use crate::record::HistoryRow;
+    use crate::study::check::Study;
+    use oedometer_problem::method::Method;
+    use oedometer_scenes::column::Undrained;
+
+    #[test]
+    fn load_and_settlement_are_drawn_on_the_finest_mesh_of_most_methods() {
+        let text = |scene: &str| {
+            format!(
+                "title = 't'\nscene = '{scene}'\n[[sweep]]\nmethod = ['GIMP']\nintegrator = ['implicit']\ncells = [2]\n"
+            )
+        };
+        let [study, column] = ["footing", "terzaghi"].map(|scene| study_of("s", &text(scene)));
+        let one = records_of(&(text("terzaghi").replace("[[", "output.time_factors = [0.1]\n[["))).remove(0);
+        // Each curve ends at the settlement of its number of cells.
+        let run = |(name, cells): &(&str, usize)| {
+            let mut record = one.clone();
+            (record.case.method, record.case.cells) = (Method::named(name).expect("a method").into(), *cells);
+            let row = |time_factor: f64, load_factor: Option<f64>| HistoryRow {
+                time_factor,
+                degree_of_consolidation: 0.0,
+                load_factor,
+            };
+            record.history = vec![row(0.5, Some(3.0)), row(9.0, None), row(*cells as f64, Some(5.0))];
+            record
+        };
+        let found = |study: &Study, records: &[Record]| ask(&[StudyResults::new(study, records, Tier::Full)]);
+        let drawn = |study: &Study, records: &[Record]| {
+            let answer = found(study, records).expect("curves");
+            let [Part::Figures(figures)] = &answer.parts[..] else { panic!("{answer:?}") };
+            let curve = |one: &Series| (one.name.clone(), one.points.last().map_or(0.0, |last| last.0));
+            let curves: Vec<_> = figures[0].chart.series.iter().map(curve).collect();
+            (answer.sentence().expect("a sentence"), curves)
+        };
+        let told = |runs: &[(&str, usize)]| drawn(&study, &runs.iter().map(run).collect::<Vec<_>>());
+        let (a, b, c) = ("GIMP", "MPM", "VP");
+        for (runs, cells, methods) in [
+            (&[(a, 4), (a, 8), (b, 8), (b, 16), (c, 8)][..], 8, &[a, b, c][..]),
+            (&[(b, 16), (b, 8), (a, 8), (a, 4), (c, 4), (c, 8)], 8, &[b, a, c]),
+            (&[(a, 4), (b, 4), (b, 16), (c, 4), (c, 8)], 4, &[a, b, c]),
+            (&[(a, 4), (a, 16), (b, 4), (b, 8)], 4, &[a, b]),
+            (&[(a, 4), (b, 8), (c, 8)], 8, &[b, c]),
+            (&[(a, 4), (b, 8)], 8, &[b]),
+            (&[(a, 4)], 4, &[a]),
+        ] {
+            let (caption, curves) = told(runs);
+            assert!(
+                caption
+                    .contains(&format!("on {cells} cells under the plate, kept undrained by `total-stress`")),
+                "{caption}"
+            );
+            let wanted = methods.iter().chain([&"2 + π"]).map(|name| ((*name).to_owned(), f64::from(cells)));
+            assert_eq!(curves, wanted.collect::<Vec<_>>(), "{runs:?}");
+        }
+        // Neither what failed nor what is undrained otherwise counts; of several runs the first is drawn.
+        let mut records = [(a, 4), (a, 8), (b, 4), (b, 8), (b, 4)].map(|one| run(&one)).to_vec();
+        records[1].status = failed_at(1);
+        records[3].case.column.footing.undrained = Undrained::TwoPhase;
+        records[4].history.clear();
+        let (caption, curves) = drawn(&study, &records);
+        assert!(caption.contains("on 4 cells") && curves.len() == 3, "{caption} {curves:?}");
+        assert!(curves.iter().all(|(_, end)| *end == 4.0), "{curves:?}");
+        for (study, records) in [(&study, &[][..]), (&study, &records[1..2]), (&column, &records)] {
+            assert_eq!(found(study, records), None);
+        }
+    }
+}

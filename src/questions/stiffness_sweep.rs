@@ -1,0 +1,262 @@
+//! Errors and oscillation of the methods over Poisson's ratio of the skeleton, through consolidation.
+
+use crate::case::{Quantity, Sample, SolverName};
+use crate::judge::paths::{first_error, grouped};
+use crate::measure::fields::PlaneField;
+use crate::record::{Record, Status};
+use crate::study::check::Study;
+use oedometer_exact::ExactError;
+use oedometer_problem::outcome::Failure;
+use std::collections::BTreeSet;
+
+/// The methods of records, each once, in their order.
+fn methods_of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<SolverName> {
+    let groups = grouped(records, |record| record.case.method.to_string());
+    groups.into_iter().map(|(_, records)| records[0].case.method).collect()
+}
+
+/// Fewest values of a sweep.
+const LEAST_VALUES: usize = 2;
+
+fn ratio_of(record: &Record) -> f64 {
+    record.case.material.poissons_ratio
+}
+
+/// The stiffness of the water of most records, the first of equally frequent ones: it must not vary with the ratio.
+fn usual_water<'a>(records: impl Iterator<Item = &'a Record>) -> Option<f64> {
+    let groups = grouped(records, |record| record.case.material.water_bulk_modulus.to_bits());
+    let most = groups.iter().map(|(_, records)| records.len()).max()?;
+    groups.into_iter().find(|(_, records)| records.len() == most).map(|(bits, _)| f64::from_bits(bits))
+}
+
+/// One method at one time over all ratios.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepRow {
+    /// The method.
+    pub method: SolverName,
+    /// Time factor of the output.
+    pub time_factor: f64,
+    /// At each ratio the relative L2 errors of the nodal displacement and of the pressure at the points, and the oscillation index
+    /// of the pressure.
+    pub found: Vec<[Option<f64>; 3]>,
+    /// How the run at each value failed, where it did: such a run has no result that could be lost.
+    pub failed: Vec<Option<String>>,
+}
+
+/// A method keeps its result where displacement and pressure are off by less than this.
+pub const KEPT: f64 = 0.1;
+
+impl SweepRow {
+    /// Errors of displacement and pressure at a value of the sweep.
+    pub fn errors(&self, place: usize) -> [Option<f64>; 2] {
+        let [displacement, pressure, _] = self.found[place];
+        [displacement, pressure]
+    }
+
+    /// The first value of the sweep at which the result of a run that ended is lost; nothing where it is kept at all of
+    /// them, and of a value at which the method did not run nothing is known.
+    pub fn lost_from(&self) -> Option<usize> {
+        let is_kept = |error: Option<f64>| error.is_some_and(|error| error < KEPT);
+        let is_lost = |place: &usize| {
+            let errors = self.errors(*place);
+            self.failed[*place].is_none()
+                && errors.iter().any(Option::is_some)
+                && !errors.into_iter().all(is_kept)
+        };
+        (0..self.found.len()).find(is_lost)
+    }
+
+    /// At how many values the method ran.
+    fn runs(&self) -> usize {
+        let has_run =
+            |place: &usize| self.failed[*place].is_some() || self.errors(*place).iter().any(Option::is_some);
+        (0..self.found.len()).filter(has_run).count()
+    }
+
+    /// The first value of the sweep at which the run failed, and how.
+    pub fn failed_from(&self) -> Option<(usize, &str)> {
+        self.failed.iter().enumerate().find_map(|(place, failed)| Some((place, failed.as_deref()?)))
+    }
+}
+
+/// Every method over Poisson's ratio.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StiffnessSweep {
+    /// Cells over the height.
+    pub cells: usize,
+    /// Values, ascending.
+    pub values: Vec<f64>,
+    /// Time factors of the outputs, ascending.
+    pub time_factors: Vec<f64>,
+    /// One row for each method and time.
+    pub rows: Vec<SweepRow>,
+}
+
+impl StiffnessSweep {
+    /// The sweep of a study's records on one mesh; `None` where the study has none. Step sizes may
+    /// differ: a stiffer skeleton consolidates faster.
+    ///
+    /// # Errors
+    /// When a reference refuses a case.
+    pub fn new(study: &Study, records: &[Record]) -> Result<Option<Self>, ExactError> {
+        // The fields under a footing are not unique.
+        if !study.scene.measures(Quantity::Pressure) {
+            return Ok(None);
+        }
+        let implicit = || records.iter().filter(|record| !record.case.is_explicit());
+        let Some(usual) = usual_water(implicit()) else { return Ok(None) };
+        let begun = || implicit().filter(|record| record.case.material.water_bulk_modulus == usual);
+        let swept = begun().filter(|record| record.status == Status::Ok);
+        // The mesh and the outputs with which most methods ran in most soils, of equals the finest.
+        let mesh = |record: &Record| {
+            let times: Vec<u64> = record.case.time_factors.iter().map(|time| time.to_bits()).collect();
+            (record.case.cells, record.case.points_per_cell, times)
+        };
+        let runs = |records: &[&Record]| {
+            let run = |record: &&Record| (record.case.method.to_string(), ratio_of(record).to_bits());
+            records.iter().map(run).collect::<BTreeSet<_>>().len()
+        };
+        let meshes = grouped(swept.clone(), |record| mesh(record));
+        let Some((_, shown)) =
+            meshes.into_iter().max_by_key(|(mesh, records)| (runs(records), mesh.0, mesh.1))
+        else {
+            return Ok(None);
+        };
+        let hardest = shown.into_iter().max_by(|a, b| ratio_of(a).total_cmp(&ratio_of(b)));
+        let Some(hardest) = hardest else { return Ok(None) };
+        let alike: Vec<&Record> = swept.filter(|record| mesh(record) == mesh(hardest)).collect();
+        let failed: Vec<&Record> = begun()
+            .filter(|record| record.status.failure().is_some() && mesh(record) == mesh(hardest))
+            .collect();
+        let both = || alike.iter().chain(&failed).copied();
+        let mut values: Vec<f64> = both().map(ratio_of).collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        let methods = methods_of(both());
+        // Values at which most methods ran: nothing is said of the others there.
+        values.retain(|value| {
+            2 * methods_of(both().filter(|record| ratio_of(record) == *value)).len() >= methods.len()
+        });
+        if values.len() < LEAST_VALUES {
+            return Ok(None);
+        }
+        let time_factors = hardest.case.time_factors.to_vec();
+        let reference = study.references[0].name();
+        let found = |method: SolverName, time_factor: f64, value: f64| {
+            let record =
+                alike.iter().find(|record| record.case.method == method && ratio_of(record) == value);
+            record.map_or(Ok([None; 3]), |record| found(record, time_factor, reference))
+        };
+        let failure = |method: SolverName, value: f64| {
+            let is_of = |record: &&&Record| record.case.method == method && ratio_of(record) == value;
+            failed.iter().find(is_of)?.status.failure().map(Failure::name_with_step)
+        };
+        let mut rows = Vec::new();
+        for time_factor in time_factors.iter().copied() {
+            for method in methods.iter().copied() {
+                let found = values.iter().map(|value| found(method, time_factor, *value));
+                let found = found.collect::<Result<_, _>>()?;
+                let failed = values.iter().map(|value| failure(method, *value)).collect();
+                let row = SweepRow { method, time_factor, found, failed };
+                if row.runs() >= LEAST_VALUES || row.failed_from().is_some() {
+                    rows.push(row);
+                }
+            }
+        }
+        Ok(Some(Self { cells: hardest.case.cells, values, time_factors, rows }))
+    }
+
+    /// The rows of one output.
+    pub fn at(&self, time_factor: f64) -> impl Iterator<Item = &SweepRow> {
+        self.rows.iter().filter(move |row| row.time_factor == time_factor)
+    }
+}
+
+fn found(record: &Record, time_factor: f64, reference: &str) -> Result<[Option<f64>; 3], ExactError> {
+    let error = |quantity, sample| first_error(record, quantity, sample, reference, time_factor);
+    Ok([
+        error(Quantity::Displacement, Sample::Nodes),
+        error(Quantity::Pressure, Sample::Points),
+        PlaneField::of(record, time_factor)?.map(|field| field.oscillation_index()),
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::study::file::StudySource;
+    use oedometer_problem::outcome::FailureKind;
+
+    #[test]
+    fn a_sweep_is_of_the_mesh_on_which_most_ran_and_of_equals_the_finest() {
+        let values = [0.1, 0.2, 0.3];
+        let text = format!(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GC-SRI-patch']\n\
+             integrator = ['implicit']\ncells = [4, 16, 8]\npoissons_ratio = {values:?}\n"
+        );
+        let study = Study::check(&StudySource { name: "s.toml".to_owned(), text: text.clone() });
+        let study = study.expect("a sound study");
+        let mut records = records_of(&text);
+        // An error by which a run is known: its cells, and the place of its value.
+        let mark = |cells: usize, place: usize| cells as f64 + 0.1 * place as f64;
+        let place_of = |record: &Record| {
+            values.iter().position(|value| *value == ratio_of(record)).expect("a value of the sweep")
+        };
+        for record in &mut records {
+            let error = mark(record.case.cells, place_of(record));
+            record.errors.iter_mut().for_each(|row| row.value = error);
+        }
+        let sweep =
+            |records: &[Record]| StiffnessSweep::new(&study, records).expect("references take the cases");
+        let cells = |records: &[Record]| sweep(records).map(|found| found.cells);
+        for _ in 0..2 {
+            let found = sweep(&records).expect("three values");
+            assert_eq!((found.cells, &found.values[..]), (16, &values[..]));
+            let row = found.at(0.1).next().expect("a row");
+            let expected = [0, 1, 2].map(|place| [Some(mark(16, place)); 2]);
+            let errors: Vec<[Option<f64>; 2]> = row.found.iter().map(|one| [one[0], one[1]]).collect();
+            assert_eq!(errors, expected);
+            records.reverse();
+        }
+        // Without the run of the finest mesh in the least compressible soil, the next one is shown.
+        let without = |skip: &dyn Fn(usize, usize) -> bool| -> Vec<Record> {
+            let kept = |record: &&Record| !skip(record.case.cells, place_of(record));
+            records.iter().filter(kept).cloned().collect()
+        };
+        assert_eq!(cells(&without(&|cells, place| cells == 16 && place == 2)), Some(8));
+        assert_eq!(cells(&without(&|cells, place| cells > 4 && place == 2)), Some(4));
+        assert_eq!(cells(&without(&|cells, place| cells == 16 && place == 0)), Some(8), "two values");
+        assert_eq!(cells(&without(&|cells, place| cells < 16 || place == 0)), Some(16), "two are enough");
+        let mut failed = records.clone();
+        for record in failed.iter_mut().filter(|one| one.case.cells == 16 && place_of(one) == 2) {
+            let (kind, reason) = (FailureKind::Unstable, "a test".to_owned());
+            record.status = Status::Failed(Failure { kind, step: 1, time: 1.0, growth: None, reason });
+        }
+        assert_eq!(cells(&failed), Some(8));
+        // A failed run is told with its reason, and is no lost result.
+        let mut among = records.clone();
+        among[1].case.method =
+            SolverName::Own(oedometer_problem::method::Method::named("MPM").expect("a method"));
+        among[1].case.cells = 16;
+        among[1].status =
+            failed.iter().find(|one| one.status != Status::Ok).expect("it failed").status.clone();
+        let found = sweep(&among).expect("values");
+        let row = found.at(0.1).find(|row| row.method.to_string() == "MPM").expect("a row");
+        assert_eq!(row.failed_from().map(|(_, how)| how), Some("unstable at step 1"), "{row:?}");
+        // A soil in another water is in no sweep.
+        for record in records.iter_mut().filter(|record| place_of(record) == 2) {
+            record.case.material.water_bulk_modulus *= 1.5;
+        }
+        assert_eq!(sweep(&records).map(|found| found.values.len()), Some(2));
+    }
+
+    #[test]
+    fn fields_under_a_footing_are_in_no_sweep() {
+        let text = "title = 't'\nscene = 'footing'\noutput.time_factors = [0.01]\n[[sweep]]\nmethod = ['GIMP-Bbar']\n\
+                    integrator = ['implicit']\ncells = [2]\ntime_step = [{ growth = 0.5 }]\npoissons_ratio = [0.3, 0.4]\n";
+        let study = Study::check(&StudySource { name: "s.toml".to_owned(), text: text.to_owned() });
+        let found = StiffnessSweep::new(&study.expect("a sound study"), &records_of(text));
+        assert_eq!(found.expect("no reference is asked"), None);
+    }
+}
