@@ -5,9 +5,9 @@
 
 use crate::program::assert_snapshot;
 use oedometer::{
-    AllStudies, Answers, Block, GoldenFile, GoldenKey, Making, Page, Provenance, Record, ReportFindings, RunOptions, Study, StudyCheck, StudyResults, StudySource, Table, Tier, WallSample,
-    answer_page, figures, junit, measures, render_html, render_markdown, run_study, study_page, values_of,
-    verdicts,
+    AllStudies, Answers, Block, GoldenFile, GoldenKey, Making, Page, Provenance, Record, ReportFindings,
+    RunOptions, Study, StudyCheck, StudyResults, StudySource, Table, Tier, WallSample, answer_page, figures,
+    junit, measures, render_html, render_markdown, run_study, study_page, values_of, verdicts,
 };
 
 const STUDY: &str = r#"
