@@ -40,8 +40,8 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
         return None;
     }
     // Below the resolution of the search, that.
-    let difference = |found: &&&CriticalStep| found.known().and(found.within().or(found.deviation()));
-    let deviations = || searched.iter().filter_map(|found| difference(&found));
+    let difference = |found: &&CriticalStep| found.known().and(found.within().or(found.deviation()));
+    let deviations = || searched.iter().filter_map(difference);
     let facts = Facts {
         cases: searched.len(),
         compared: deviations().count(),
