@@ -108,7 +108,7 @@ FAULTS = [
     ("sideways", "document.querySelector('h1').style.width = '3000px'"),
     ("cut", "Object.assign(document.querySelector('h1').style, {width: '40px', overflow: 'hidden', whiteSpace: 'nowrap'})"),
     ("cut", "document.querySelector('figure text').setAttribute('x', '-900')"),
-    ("pale", "document.querySelector('main p').style.color = '#b8b8b8'"),
+    ("pale", "document.querySelector('figcaption').style.color = '#b8b8b8'"),
     ("pale", "document.querySelector('figure text').style.fill = '#e0e0e0'"),
     ("covered", "(() => { const [a, b] = document.querySelectorAll('figure text'); for (const k of ['x', 'y', 'text-anchor']) b.setAttribute(k, a.getAttribute(k)); })()"),
     ("link", "document.querySelector('main a').setAttribute('href', 'nowhere.html')"),
