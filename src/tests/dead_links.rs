@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Folders of the repository that hold Markdown for readers.
-const FOLDERS: [&str; 7] = ["", "docs", "docs/dev", "examples", "python", "benches", "paper"];
+const FOLDERS: [&str; 9] =
+    ["", "docs", "docs/dev", "report", "report/studies", "examples", "python", "benches", "paper"];
 
 fn pages() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
