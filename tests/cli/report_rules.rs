@@ -185,9 +185,8 @@ fn the_first_page_is_short_and_free_of_riddles() {
     let committed = concat!(env!("CARGO_MANIFEST_DIR"), "/report/README.md");
     let committed = fs::read_to_string(committed).expect("the report of this repository");
     // The rules of tables are no words.
-    let words_of = |text: &str| {
-        text.split_whitespace().filter(|word| word.contains(char::is_alphanumeric)).count()
-    };
+    let words_of =
+        |text: &str| text.split_whitespace().filter(|word| word.contains(char::is_alphanumeric)).count();
     for text in [&markdown, &raced, &committed] {
         let words = words_of(text);
         assert!(words <= 2500, "{words} words");
