@@ -51,7 +51,7 @@ def _doubles(numbers: Numbers) -> Tuple[bytes, Tuple[int, ...]]:
         try:
             whole = _numpy.ascontiguousarray(numbers, dtype=_numpy.float64)
         except (TypeError, OverflowError) as error:
-            raise ValueError(f"these are no numbers: {error}") from None
+            raise ValueError(f"these are not numbers: {error}") from None
         return whole.tobytes(), _numpy.shape(numbers)
     if isinstance(numbers, (int, float)):
         return array("d", [numbers]).tobytes(), ()
@@ -89,7 +89,7 @@ def _inputs(given: Dict[str, Any]) -> List[Tuple[str, str]]:
 
     wrong = [name for name, value in given.items() if not isinstance(value, (str, SupportsFloat))]
     if wrong:
-        raise ValueError(f"`{wrong[0]}` is no number: {given[wrong[0]]!r}")
+        raise ValueError(f"`{wrong[0]}` is not a number: {given[wrong[0]]!r}")
     return [(name, text(value)) for name, value in given.items()]
 
 
@@ -204,27 +204,27 @@ class Table(Dict[str, Any]):
 
 @dataclass(frozen=True)
 class Score:
-    """A result held against the references of a scene."""
+    """A result compared with the references of a benchmark problem."""
 
     errors: Table
-    """A row an error: ``time_factor``, ``quantity`` (pressure, effective_stress, displacement, settlement),
+    """One row per error: ``time_factor``, ``quantity`` (pressure, effective_stress, displacement, settlement),
     ``sample``, ``norm`` (l1, l2, linf, relative), ``reference``, ``value`` (relative) and ``absolute`` (over the load, or
     over the final settlement)."""
     worst: Table
     """The place that carries most of each error: ``zeta``, ``computed``, ``exact``, ``share`` of the squared error."""
     warnings: List[str]
-    """In what the result is not whole."""
+    """What the result lacks."""
     diagnosis: List[str]
     """What seems to be wrong with its numbers: units, signs, times."""
     reference: str
-    """The scene's own reference."""
+    """The reference of the problem itself."""
     name: str = ""
     """The files, where it was read from files."""
     series: Table = field(default_factory=Table)
-    """Of results on several meshes a row a measure: ``time_factor``, ``quantity``, ``sample``, ``norm``, ``reference``, the
-    ``cells`` of the meshes with their ``errors``, ``order``, ``class`` and ``reason``."""
+    """For results on several meshes, one row per measure: ``time_factor``, ``quantity``, ``sample``, ``norm``, ``reference``,
+    the ``cells`` of the meshes with their ``errors``, ``order``, ``class`` and ``reason``."""
     not_judged: List[str] = field(default_factory=list)
-    """What has no error for want of data: the settlement, nodes at the surface or the base."""
+    """What could not be judged: the settlement, nodes at the surface or the base."""
 
     def error(
         self,
@@ -233,7 +233,7 @@ class Score:
         norm: Optional[str] = None,
         reference: Optional[str] = None,
     ) -> float:
-        """One error: ``l2`` of a field and ``relative`` of a settlement where no norm is named, against the scene's own
+        """One error: ``l2`` of a field and ``relative`` of a settlement where no norm is named, against the problem's own
         reference, at the time nearest to ``time_factor`` within a thousandth. ``KeyError`` where there is none."""
         norm = norm or ("relative" if quantity == "settlement" else "l2")
         reference = reference or self.reference
@@ -266,12 +266,12 @@ def score(
     reference: Optional[str] = None,
     **material: Union[float, str],
 ) -> Score:
-    """Compare a result with the references of a scene, or with one of them.
+    """Compare a result with the references of a benchmark problem, or with one of them.
 
     Parameters
     ----------
     scene : str
-        The scene, like ``terzaghi``.
+        Benchmark problem, like ``terzaghi``.
     data : pandas.DataFrame, xarray.Dataset, meshio.Mesh or sequence of (time, meshio.Mesh), optional
         The result as a whole, in place of the arrays below: its columns or arrays are read as those of a file, and
         ``mapping`` says what they mean, as in :func:`score_files`.
@@ -299,7 +299,7 @@ def score(
     Raises
     ------
     ValueError
-        Where shapes do not fit, a number is not finite, or the scene refuses.
+        Where shapes do not fit, a number is not finite, or the problem refuses an input.
     """
     if data is not None:
         found = score_files(scene, data, mapping=mapping, reference=reference, **material)
@@ -335,11 +335,11 @@ def case(
     Parameters
     ----------
     scene : str
-        The scene, like ``terzaghi``.
+        Benchmark problem, like ``terzaghi``.
     cells : int
         Cells over the height.
     time_factor : array_like, optional
-        Outputs as time factors; those of the scene where left out.
+        Outputs as time factors; by default those of the problem.
     **material
         As in :func:`exact`.
 
@@ -368,7 +368,7 @@ def score_files(
     Parameters
     ----------
     scene : str
-        The scene, like ``terzaghi``.
+        Benchmark problem, like ``terzaghi``.
     files : path, pandas.DataFrame, xarray.Dataset, meshio.Mesh, or sequence of these
         CSV, VTU, PVD, legacy VTK, NPZ, HDF5 or XDMF; patterns with ``*`` and ``?`` are expanded. A frame counts as the CSV
         that it would be, a mesh as its VTU; meshes at several times are pairs ``(time in s, mesh)``.
@@ -440,8 +440,8 @@ class Convergence:
 def convergence(sizes: Numbers, errors: Numbers, formal_order: Optional[float] = None) -> Convergence:
     """Class and order of ``errors`` over the ``sizes`` of their levels (``[level]`` each, in any order).
 
-    Signed errors of a single number, like a settlement, are told from norms by their signs. ``formal_order`` is the order
-    that the method should have, where that is known.
+    Signed errors of a single number, like a settlement, are distinguished from norms by their signs. ``formal_order`` is the
+    order that the method should have, where that is known.
 
     >>> convergence([0.1, 0.05, 0.025], [4e-2, 1e-2, 2.5e-3]).kind
     'asymptotic'

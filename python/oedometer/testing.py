@@ -57,7 +57,7 @@ def assert_converges(
 def assert_below(
     bound: float, result: Score, quantity: Optional[str] = None, *, reference: Optional[str] = None
 ) -> None:
-    """Raise unless a score is whole and its errors are below a bound, at every time.
+    """Raise unless a score is complete and its errors are below a bound, at every time.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def assert_below(
     quantity : str, optional
         The one quantity that is judged; all where left out.
     reference : str, optional
-        Another reference than the scene's own.
+        A reference other than the problem's own.
     """
     __tracebackhide__ = True
     reference = reference or result.reference
@@ -103,11 +103,11 @@ def converges(
     reference: Optional[str] = None,
     **material: Union[float, str],
 ) -> Callable[[Callable[..., Any]], Callable[..., None]]:
-    """Make a test of a function that solves a scene on a number of cells.
+    """Make a test of a function that solves a benchmark problem on a number of cells.
 
     The function takes ``cells``, and any fixtures of pytest, and returns the keyword arguments of :func:`score` as a
     dictionary. Where it takes ``case`` too, that is the case of these cells as :func:`oedometer.case` has it: geometry, load,
-    soil and times in s. The test solves on each mesh, scores, and demands a whole result and the order, as
+    soil and times in s. The test solves on each mesh, scores, and demands a complete result and the order, as
     :func:`assert_converges`. Sizes are in heights of the column.
 
     Parameters

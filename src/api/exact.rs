@@ -240,7 +240,7 @@ mod tests {
             ("mandel", &[], &[1.5], "1.5"),
             ("mandel", &[], &[-0.5], "-0.5"),
             ("terzaghi", &[0.5], &[0.5], "depends on the depth alone"),
-            ("terzagi", &[0.5], &[], "no exact solution is called `terzagi`"),
+            ("terzagi", &[0.5], &[], "there is no exact solution `terzagi`"),
         ] {
             let error = exact(solution, &[0.1], depths, x, &[]).expect_err(solution).to_string();
             assert!(error.contains(told), "{error}");

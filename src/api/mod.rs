@@ -17,6 +17,7 @@ use crate::import::raw_row::SolvedBody;
 use crate::import::runs::{Run, are_tables, files_of, runs_of};
 use crate::study::file::StudySource;
 use crate::study::solver::Preset;
+use crate::study::synonyms::read_as;
 use clap::ValueEnum;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_exact::{AddedKey, ShelfProblem};
@@ -29,11 +30,11 @@ use std::path::PathBuf;
 /// # Errors
 /// When no solution has the name: lists the names.
 pub fn scene_of(solution: &str) -> Result<(ReferenceKind, &'static Scene), ApiError> {
-    let kind: ReferenceKind = solution.parse().map_err(|_| {
+    let kind: ReferenceKind = read_as(solution).parse().map_err(|_| {
         let shelf = ShelfProblem::ALL.map(ReferenceKind::Shelf);
         let names: Vec<&str> = ReferenceKind::ALL.iter().chain(&shelf).map(|kind| kind.name()).collect();
         let known = names.join(", ");
-        ApiError::UnknownName(format!("no exact solution is called `{solution}`; there are {known}"))
+        ApiError::UnknownName(format!("there is no exact solution `{solution}`; there are {known}"))
     })?;
     Ok((kind, Scene::of_solution(kind)))
 }
@@ -63,7 +64,7 @@ pub fn dotted_key(scene: &str, name: &str) -> Result<String, ApiError> {
         let names: Vec<&str> =
             [body, "material"].iter().flat_map(|table| Key::in_table(table)).map(|key| key.name).collect();
         let (scene, known) = (scene.name, names.join(", "));
-        ApiError::UnknownName(format!("no input of `{scene}` is called `{name}`; there are {known}"))
+        ApiError::UnknownName(format!("`{scene}` has no input `{name}`; it has {known}"))
     })
 }
 
@@ -166,10 +167,10 @@ mod tests {
             assert_eq!(dotted_key(scene, name).expect("a key"), key);
         }
         let told = dotted_key("terzaghi", "permeability").expect_err("no such key").to_string();
-        let start = "no input of `terzaghi` is called `permeability`; there are height, ";
+        let start = "`terzaghi` has no input `permeability`; it has height, ";
         assert!(told.starts_with(start) && told.contains(", hydraulic_conductivity, "), "{told}");
-        let told = dotted_key("terzagi", "load").expect_err("no such scene").to_string();
-        let start = "no exact solution is called `terzagi`; there are terzaghi, terzaghi-incompressible, ";
+        let told = dotted_key("terzagi", "load").expect_err("no such problem").to_string();
+        let start = "there is no exact solution `terzagi`; there are terzaghi, terzaghi-incompressible, ";
         assert!(
             told.starts_with(start) && told.ends_with(ShelfProblem::ALL[ShelfProblem::ALL.len() - 1].name()),
             "{told}"

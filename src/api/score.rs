@@ -240,7 +240,8 @@ impl Samples<'_> {
             }
         }
         if fields.iter().all(|(_, list)| list.is_empty()) && self.settlement.is_empty() {
-            let why = "nothing is given to score: pressure, effective_stress, displacement or settlement";
+            let why =
+                "there is nothing to score: give pressure, effective_stress, displacement or settlement";
             return Err(ApiError::Unfit(why.to_owned()));
         }
         Ok(())
@@ -394,7 +395,10 @@ mod tests {
                 Samples { displacement: &[1.0, 1.0, 1.0, 1.0, 1.0, f64::INFINITY], ..whole },
                 "[1][2]: `displacement` is inf",
             ),
-            (Samples { time: &two, height: &three, ..Samples::default() }, "nothing is given to score"),
+            (
+                Samples { time: &two, height: &three, ..Samples::default() },
+                "there is nothing to score: give pressure",
+            ),
         ] {
             assert!(
                 samples.check().is_err_and(|error| error.to_string().contains(told)),

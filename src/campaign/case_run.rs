@@ -162,7 +162,7 @@ fn problem_of(case: &Case) -> Result<Discretised, ExactError> {
 
 /// The refusal of an exact solution, from which the start of a scene is taken.
 fn of_start(error: StartError) -> ExactError {
-    *error.downcast().expect("the starts of scenes are those of exact solutions")
+    *error.downcast().expect("the starts of problems are those of exact solutions")
 }
 
 /// Refuses numbers that no run can go on from, before anything is computed and whoever computes it.
@@ -186,18 +186,18 @@ fn critical_step_of(case: &Case, observe: &dyn Fn(u64, u64) -> bool) -> Result<O
     // Of how many steps a search will be is not known: its work is told at its end.
     let go_on = |_, _| observe(0, 1);
     Ok(match problem.critical_step(&case.settings, end, MOST_PROBE_STEPS, &go_on) {
-        Ok(found) => outcome_of_search(case, found),
+        Ok(critical) => outcome_of_search(case, critical),
         Err(Stopped) => outcome_of_stopped_search(case),
     })
 }
 
-fn outcome_of_search(case: &Case, found: CriticalStep) -> Outcome {
-    let largest = found.observed.unwrap_or(found.predicted);
-    let predicted = found.predicted;
+fn outcome_of_search(case: &Case, critical: CriticalStep) -> Outcome {
+    let largest = critical.observed.unwrap_or(critical.predicted);
+    let predicted = critical.predicted;
     let steps =
         StepSizes { predicted_critical: predicted, target: predicted, largest, ..StepSizes::default() };
-    let steps_done = found.probes.iter().map(|probe| probe.steps).sum();
-    let inside = inside_of_search(case, steps_done, Some(found));
+    let steps_done = critical.probes.iter().map(|probe| probe.steps).sum();
+    let inside = inside_of_search(case, steps_done, Some(critical));
     Outcome::of_end(Status::Ok).with_steps(steps).with_inside(inside)
 }
 

@@ -189,8 +189,9 @@ pub fn wanted<'a>(study: &Study, missing: Vec<&'a Case>, records: &[Record]) -> 
     let known = |case: &Case| {
         let contender = CONTENDERS.iter().find(|contender| contender.runs(case));
         let mut refinement = Refinement::of(study);
-        let own = records.iter().filter(|record| contender.is_some_and(|one| one.runs(&record.case)));
-        own.for_each(|record| refinement.add(record));
+        let records_of_method =
+            records.iter().filter(|record| contender.is_some_and(|candidate| candidate.runs(&record.case)));
+        records_of_method.for_each(|record| refinement.add(record));
         refinement
     };
     missing.into_iter().filter(|case| known(case).wants(case)).collect()

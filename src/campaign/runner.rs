@@ -88,7 +88,8 @@ pub fn run_studies_thinned(
         return reports;
     }
     let selected = cases_of(studies, options);
-    let runners: Vec<CaseRunner<'_>> = studies.iter().map(|one| CaseRunner::of(one.study)).collect();
+    let runners: Vec<CaseRunner<'_>> =
+        studies.iter().map(|campaign| CaseRunner::of(campaign.study)).collect();
     let of_studies = studies.iter().zip(&runners).zip(selected);
     let mut begun: Vec<Begun<'_>> =
         of_studies.map(|((study, runner), cases)| begun(study, runner, cases, options)).collect();
@@ -359,21 +360,21 @@ fn run_and_keep(
     tell: &(dyn Fn(Progress) + Sync),
 ) -> Option<Outcome> {
     let estimate = work_of_seconds(runner.study().estimated_seconds(case));
-    let told = Cell::new(0_u64);
+    let reported = Cell::new(0_u64);
     let observe = |done: u64, expected: u64| {
         let now = u64::try_from(u128::from(estimate) * u128::from(done) / u128::from(expected.max(1)))
             .unwrap_or(estimate)
             .min(estimate);
-        if now > told.get().saturating_add(LONGEST_SILENCE.min(estimate / 200)) {
-            tell(Progress::Advanced(now - told.get()));
-            told.set(now);
+        if now > reported.get().saturating_add(LONGEST_SILENCE.min(estimate / 200)) {
+            tell(Progress::Advanced(now - reported.get()));
+            reported.set(now);
         }
         !stopped.load(Ordering::Relaxed) && !stop::is_over()
     };
     let solved = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
         runner.run_within(case, store, alone, &observe)
     }));
-    tell(Progress::Advanced(estimate - told.get()));
+    tell(Progress::Advanced(estimate - reported.get()));
     let record = match solved {
         Ok(Ok(record)) if is_stopped(&record) && (stopped.load(Ordering::Relaxed) || stop::is_over()) => {
             return None;

@@ -34,13 +34,14 @@ impl TakenOver {
     /// The sentences on several, one for each solver and origin.
     pub fn sentences(all: &[Self]) -> Vec<String> {
         let mut groups: Vec<(&Self, Vec<&str>)> = Vec::new();
-        for one in all {
+        for result in all {
             let is_alike = |other: &Self| {
-                (&other.solver, &other.made_by, other.is_proven) == (&one.solver, &one.made_by, one.is_proven)
+                (&other.solver, &other.made_by, other.is_proven)
+                    == (&result.solver, &result.made_by, result.is_proven)
             };
             match groups.iter_mut().find(|(first, _)| is_alike(first)) {
-                Some((_, cases)) => cases.push(&one.case),
-                None => groups.push((one, vec![&one.case])),
+                Some((_, cases)) => cases.push(&result.case),
+                None => groups.push((result, vec![&result.case])),
             }
         }
         groups.into_iter().map(|(first, cases)| first.sentence(&cases)).collect()
@@ -57,7 +58,7 @@ impl TakenOver {
             "and nothing proves that its program is unchanged"
         };
         format!(
-            "`{}` was not run: {count} taken over ({cases}{more}), made by {}, {proof}",
+            "`{}` was not run: {count} reused ({cases}{more}), made by {}, {proof}",
             self.solver, self.made_by
         )
     }
@@ -80,16 +81,16 @@ mod tests {
         assert_eq!(
             TakenOver::sentences(&all),
             [
-                "`a` was not run: 2 results taken over (a cells=4, a cells=8), made by v1, whose version and named files are \
+                "`a` was not run: 2 results reused (a cells=4, a cells=8), made by v1, whose version and named files are \
                  unchanged",
-                "`b` was not run: 1 result taken over (b cells=4), made by v1, and nothing proves that its program is unchanged",
-                "`a` was not run: 1 result taken over (a cells=9), made by v2, whose version and named files are unchanged",
+                "`b` was not run: 1 result reused (b cells=4), made by v1, and nothing proves that its program is unchanged",
+                "`a` was not run: 1 result reused (a cells=9), made by v2, whose version and named files are unchanged",
             ]
         );
         let many: Vec<TakenOver> = (0..14).map(|cells| of("a", cells, "v1", true)).collect();
         let told = TakenOver::sentences(&many).remove(0);
         assert!(
-            told.contains("14 results taken over (a cells=0,") && told.contains("a cells=11 and 2 more)"),
+            told.contains("14 results reused (a cells=0,") && told.contains("a cells=11 and 2 more)"),
             "{told}"
         );
     }

@@ -204,7 +204,7 @@ fn a_failure_is_told_with_its_study_and_kept_and_of_what_may_not_begin_neither()
             progress.iter().filter(|one| matches!(one, Progress::Failed { .. })).collect();
         let failure = reports[0].records[0].status.failure().expect("it failed").to_string();
         if study.may_start_solvers {
-            let words = "failed: it ended with exit code 3; an error of the solver, or of its adapter. The last it said: oh no";
+            let words = "failed: it ended with exit code 3; an error of the solver, or of its adapter. Its output ended: oh no";
             assert_eq!(failure, words);
             let label = study.planned[0].case.label();
             assert_eq!(failed, [&Progress::Failed { study: "theirs".to_owned(), label, failure }]);

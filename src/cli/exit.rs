@@ -10,7 +10,7 @@ use oedometer_formats::ImportError;
 
 /// The exit codes, for `--help`.
 pub const HELP: &str = "Exit codes: 0 pass, 1 a verdict failed, 2 usage or bad study file, 3 a case failed or timed \
-                        out, 4 nothing selected, 5 golden missing or stale, 6 cases missing (an \
+                        out, 4 nothing selected, 5 golden values missing or stale, 6 cases missing (an \
                         incomplete merge, an interrupted run, solvers that may not start)";
 
 /// How a command ended.
@@ -82,27 +82,27 @@ pub fn sentence(error: &anyhow::Error) -> String {
         return error.to_string();
     }
     // A cause that the message already ends with is not repeated.
-    let mut told = String::new();
+    let mut message = String::new();
     for cause in error.chain().map(ToString::to_string) {
-        if told.is_empty() {
-            told = cause;
-        } else if !told.ends_with(&cause) {
-            told = format!("{told}: {cause}");
+        if message.is_empty() {
+            message = cause;
+        } else if !message.ends_with(&cause) {
+            message = format!("{message}: {cause}");
         }
     }
-    let told = without_numbers_of_the_system(&told);
-    if told.starts_with("error: ") { told } else { format!("error: {told}") }
+    let message = without_numbers_of_the_system(&message);
+    if message.starts_with("error: ") { message } else { format!("error: {message}") }
 }
 
 /// Removes error numbers of the system: ` (os error 2)`.
 fn without_numbers_of_the_system(sentence: &str) -> String {
     let mut rest = sentence;
-    let mut told = String::new();
+    let mut shortened = String::new();
     while let Some((before, after)) = rest.split_once(" (os error ") {
-        told.push_str(before);
+        shortened.push_str(before);
         rest = after.split_once(')').map_or("", |(_, after)| after);
     }
-    told + rest
+    shortened + rest
 }
 
 #[cfg(test)]
@@ -143,7 +143,7 @@ mod tests {
         let order = [Exit::Pass, Exit::VerdictFailed, Exit::Usage, Exit::CaseFailed, Exit::NothingSelected];
         assert!(order.is_sorted() && order[4] < Exit::Golden && Exit::Golden < Exit::IncompleteMerge);
         let told = "Exit codes: 0 pass, 1 a verdict failed, 2 usage or bad study file, 3 a case failed or timed out, \
-                    4 nothing selected, 5 golden missing or stale, 6 cases missing (an incomplete merge, an \
+                    4 nothing selected, 5 golden values missing or stale, 6 cases missing (an incomplete merge, an \
                     interrupted run, solvers that may not start)";
         assert_eq!(HELP, told);
     }

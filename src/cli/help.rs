@@ -10,7 +10,7 @@ const GROUPS: [Group; 5] = [
     (
         "Start",
         &[
-            ("new", ["new my-study", "new solver mine --language python"]),
+            ("new", ["new my-study", "new my-layer --scene cosine-layer"]),
             ("list", ["list", "list --show terzaghi-mesh"]),
             ("exact", ["exact terzaghi --time-factor 0.1", "exact xie-leo --degree 0.5,0.9"]),
             (
@@ -31,10 +31,7 @@ const GROUPS: [Group; 5] = [
             ("report", ["report", "report my-study.toml --out pages"]),
             (
                 "accept",
-                [
-                    "accept my-study.toml --reason \"First results\"",
-                    "accept race --reason \"One more contender\"",
-                ],
+                ["accept my-study.toml --reason \"First results\"", "accept race --reason \"Add a method\""],
             ),
             ("explain", ["explain 3f2a my-study.toml", "explain \"GC-SRI-patch cells=20\" terzaghi-mesh"]),
         ],
@@ -42,6 +39,7 @@ const GROUPS: [Group; 5] = [
     (
         "Your own solver",
         &[
+            ("new-solver", ["new-solver mine", "new-solver mine --language shell"]),
             (
                 "score",
                 [

@@ -85,21 +85,21 @@ impl JobList {
         let ratio = balance.largest / balance.mean;
         say!(
             "{}: the largest takes {}, {ratio:.2} times the mean",
-            count_of(usize::try_from(self.tasks).unwrap_or(usize::MAX), "share", "shares"),
+            count_of(usize::try_from(self.tasks).unwrap_or(usize::MAX), "shard", "shards"),
             duration(balance.largest)
         );
         if balance.longest_case > balance.mean {
             say!(
-                "one case alone takes {}, more than a share of {}: more than {:.0} shares gain nothing",
+                "one case alone takes {}, more than a shard of {}: more than {:.0} shards gain nothing",
                 duration(balance.longest_case),
                 duration(balance.mean),
                 (balance.mean * self.tasks as f64 / balance.longest_case).max(1.0).floor()
             );
         } else if ratio > UNEVEN && self.parting == Parting::Hash {
-            say!("`--balance` makes the shares even: the longest cases first, each to the least share");
+            say!("`--balance` makes the shards even: the longest case goes to the smallest shard");
         }
         if balance.empty > 0 {
-            say!("{} of the shares have no case", balance.empty);
+            say!("{} of the shards have no case", balance.empty);
         }
     }
 }

@@ -35,7 +35,7 @@ struct Arguments {
 enum Command {
     /// Run studies: one JSON record per case, one tidy CSV per study
     Run(run::Arguments),
-    /// Run what is missing and render the whole report
+    /// Run missing cases and write the report
     Report(report::Arguments),
     /// Check studies against their expectations and golden values
     Check(check::Arguments),
@@ -45,31 +45,33 @@ enum Command {
     Exact(exact::Arguments),
     /// Solve one case and print its errors
     Solve(solve::Arguments),
-    /// Compare a result of another program with exact solutions
+    /// Compare another program's result with exact solutions
     Score(score::Arguments),
     /// Predict and observe the critical time step
     Stability(stability::Arguments),
     /// List a study's cases and estimate the run time
     Plan(plan::Arguments),
-    /// List the content of a folder of results, or print single records
+    /// List the contents of a results folder, or print single records
     Records(records::Arguments),
-    /// Combine the records of shards, with the whole table of each study
+    /// Merge the records of shards, and write the table of each study
     Merge(merge::Arguments),
-    /// List scenes, methods, references and shipped studies
+    /// List benchmark problems, methods, references and built-in studies
     List(list::Arguments),
-    /// Write a commented study, or an adapter for another solver
+    /// Write a commented study
     New(new::Arguments),
+    /// Write a study that attaches another solver, with its adapter
+    NewSolver(new::SolverArguments),
     /// Show where the error of a case comes from, and what changed
     Explain(explain::Arguments),
-    /// Compare two states: folders of records or git revisions
+    /// Compare two states: results folders or git revisions
     Compare(compare::Arguments),
     /// Show golden values over the commits that changed them
     History(history::Arguments),
-    /// Find the commit that moved the results of a study
+    /// Find the commit that changed the results of a study
     Bisect(bisect::Arguments),
     /// Print the JSON Schema of studies, records, mappings or cases
     Schema(schema::Arguments),
-    /// Print the completions for a shell
+    /// Print shell completions
     Completions(completions::Arguments),
 }
 
@@ -117,6 +119,7 @@ fn run(command: Command) -> anyhow::Result<Exit> {
         Command::Records(arguments) => records::run(&arguments),
         Command::List(arguments) => list::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
+        Command::NewSolver(arguments) => new::run_solver(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::History(arguments) => history::run(&arguments),

@@ -89,11 +89,11 @@ pub fn say_line(words: Arguments<'_>) {
 /// When the file system refuses, with the path.
 pub fn write_document(path: &Path, text: &str) -> anyhow::Result<()> {
     let text = &document(text);
-    let is_link = fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink());
+    let is_link = fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_symlink());
     let target = fs::metadata(path);
     match target {
         // A device may be this program's own output, so it is not truncated.
-        Ok(found) if !found.is_file() || is_system_path(path) => {
+        Ok(metadata) if !metadata.is_file() || is_system_path(path) => {
             through(path, OpenOptions::new().append(true), text)
         }
         Ok(_) if is_link => {
@@ -145,7 +145,7 @@ pub fn path_in(name: &str) -> Option<PathBuf> {
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SolveFormat {
-    /// For people
+    /// Text for the terminal
     Table,
     /// One row per measure or case
     Csv,
@@ -156,13 +156,13 @@ pub enum SolveFormat {
 /// How a table is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum TableFormat {
-    /// For people
+    /// Text for the terminal
     Table,
-    /// For GitHub
+    /// Tables in Markdown
     Markdown,
-    /// For programs, numbers with all digits
+    /// Rows with all digits
     Csv,
-    /// For programs, everything
+    /// Everything
     Json,
 }
 

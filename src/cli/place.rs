@@ -25,11 +25,11 @@ const MARK: &str = "oedometer.toml";
 /// Which studies a command takes.
 #[derive(Debug, clap::Args)]
 pub struct StudyArguments {
-    /// Study files, folders of them, or names of shipped studies [default: the studies of this project,
+    /// Study files, folders of them, or names of built-in studies [default: the studies of this project,
     /// `studies/*.toml` or `*.toml`, here or above]
     #[arg(value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
-    /// Use all shipped studies
+    /// Take all built-in studies
     #[arg(long, conflicts_with = "studies")]
     shipped: bool,
 }
@@ -60,15 +60,15 @@ pub fn named(given: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
     let mut chosen = Vec::new();
     for path in given {
         if path.is_dir() && shipped_study(&path.to_string_lossy()).is_none() {
-            let found = studies_in(path);
-            if found.is_empty() {
-                let told = path.display();
+            let studies = studies_in(path);
+            if studies.is_empty() {
+                let shown = path.display();
                 return Err(Ended::usage(format!(
-                    "the folder {told} has no study: `oedometer new {}` writes one there",
+                    "the folder {shown} has no study: `oedometer new {}` writes one there",
                     path.join("my-study").display()
                 )));
             }
-            chosen.extend(found);
+            chosen.extend(studies);
         } else if path.as_os_str() == RACE && !path.exists() {
             chosen.extend(shipped_names().into_iter().filter(|name| is_of_race(name)).map(PathBuf::from));
         } else {
@@ -90,30 +90,32 @@ pub fn studies_of_this_project() -> anyhow::Result<Vec<PathBuf>> {
     let is_project = |folder: &Path| {
         folder.as_os_str().is_empty()
             || folder.join(MARK).is_file()
-            || [GOLDEN, STUDIES].iter().any(|one| folder.join(one).is_dir())
+            || [GOLDEN, STUDIES].iter().any(|name| folder.join(name).is_dir())
     };
     let mut folders = with_parents(Path::new("")).into_iter().filter(|folder| is_project(folder));
-    folders.find_map(|folder| Some(studies_in(&folder)).filter(|found| !found.is_empty())).ok_or_else(|| {
-        let why = "there is no study in this folder, in its `studies/` or in a project above: name one, \
-                   `oedometer new my-study` writes one, and `--shipped` takes those of the program";
-        Ended::with(Exit::NothingSelected, why)
-    })
+    folders.find_map(|folder| Some(studies_in(&folder)).filter(|studies| !studies.is_empty())).ok_or_else(
+        || {
+            let why = "there is no study in this folder, in its `studies/` or in a project above: name one, \
+                   `oedometer new my-study` writes one, and `--shipped` takes the built-in ones";
+            Ended::with(Exit::NothingSelected, why)
+        },
+    )
 }
 
 /// The studies of a folder: those in its `studies/`, or those in itself where there are none. The shipped ones in the
 /// order of the report, then all others by name.
 fn studies_in(folder: &Path) -> Vec<PathBuf> {
     let order = shipped_names();
-    let mut found = [folder.join(STUDIES), folder.to_owned()]
+    let mut studies = [folder.join(STUDIES), folder.to_owned()]
         .iter()
         .map(|folder| study_files_of(folder))
-        .find(|found| !found.is_empty())
+        .find(|studies| !studies.is_empty())
         .unwrap_or_default();
-    found.sort_by_cached_key(|file| {
-        let told = file.display().to_string();
-        (order.iter().position(|name| *name == name_of(&told)).unwrap_or(order.len()), told)
+    studies.sort_by_cached_key(|file| {
+        let shown = file.display().to_string();
+        (order.iter().position(|name| *name == name_of(&shown)).unwrap_or(order.len()), shown)
     });
-    found
+    studies
 }
 
 /// The study files in a folder. Mappings and the settings of other programs, which have no scene and no sweep, are none.
@@ -149,15 +151,15 @@ fn above(folder: &Path) -> PathBuf {
 /// above it, up to the root of its project or repository; else the one here. Where there is none yet, beside the file
 /// or beside its `studies/`.
 pub fn folder_of_golden(file: Option<&Path>) -> PathBuf {
-    let own = file.and_then(Path::parent).unwrap_or(Path::new(""));
+    let beside = file.and_then(Path::parent).unwrap_or(Path::new(""));
     let is_root = |folder: &PathBuf| folder.join(MARK).is_file() || folder.join(".git").exists();
-    let folders = with_parents(own);
-    let is_home = whole(own).is_some_and(|own| own.ends_with(STUDIES));
+    let folders = with_parents(beside);
+    let is_home = whole(beside).is_some_and(|beside| beside.ends_with(STUDIES));
     let root = folders.iter().position(is_root).unwrap_or(usize::from(is_home));
     let mut searched = folders[..=root.min(folders.len() - 1)].to_vec();
     searched.push(PathBuf::new());
-    let found = searched.into_iter().map(|folder| folder.join(GOLDEN)).find(|folder| folder.is_dir());
-    found.unwrap_or_else(|| if is_home { above(own) } else { own.to_owned() }.join(GOLDEN))
+    let folder = searched.into_iter().map(|folder| folder.join(GOLDEN)).find(|folder| folder.is_dir());
+    folder.unwrap_or_else(|| if is_home { above(beside) } else { beside.to_owned() }.join(GOLDEN))
 }
 
 /// The golden values of a chosen study or of the exact solutions: from a folder where one is given, else from that of its

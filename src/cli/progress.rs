@@ -94,7 +94,7 @@ fn note_with(longest: &LongestCase, take: impl Fn(&str) -> String) -> Option<Str
     if seconds < LONG_CASE {
         return None;
     }
-    let own = case.integrator.name();
+    let integrator = case.integrator.name();
     let remedy = match faster(case) {
         Some(other) => {
             format!("; {}: {}", take(other.integrator.name()), duration(estimated_seconds(&other)))
@@ -103,13 +103,17 @@ fn note_with(longest: &LongestCase, take: impl Fn(&str) -> String) -> Option<Str
         None => "; larger steps, fewer cells or an earlier last `time_factors` take less".to_owned(),
     };
     let end = if seconds > LONGEST_ALLOWED.max(*case_seconds) {
-        ", and longer than a week: such a case is not run".to_owned()
+        ", longer than a week: such a case is refused".to_owned()
     } else if *case_seconds < seconds {
-        format!(", and the case is ended after {} (`case_seconds = {case_seconds}`)", duration(*case_seconds))
+        format!("; the case is stopped after {} (`case_seconds = {case_seconds}`)", duration(*case_seconds))
     } else {
         String::new()
     };
-    Some(format!("warning: {study}: {}\n  {own}: about {}{remedy}{end}", case.label(), duration(seconds)))
+    Some(format!(
+        "warning: {study}: {}\n  {integrator}: about {}{remedy}{end}",
+        case.label(),
+        duration(seconds)
+    ))
 }
 
 #[cfg(test)]
@@ -137,7 +141,7 @@ mod tests {
         let [own, other] = [&case, &longest(&TERZAGHI, IntegratorKind::Implicit, 1e-7)]
             .map(|one| duration(estimated_seconds(&one.case)));
         let head = format!("warning: soft: {}\n  explicit: about {own}; ", case.case.label());
-        let end = ", and the case is ended after 60 min (`case_seconds = 3600`)";
+        let end = "; the case is stopped after 60 min (`case_seconds = 3600`)";
         let sweep = "`integrator = [\"implicit\"]` in its [[sweep]]";
         assert_eq!(note, Some(format!("{head}{sweep}: {other}{end}")));
         assert_eq!(note_on_solve(&case), Some(format!("{head}`--integrator implicit`: {other}{end}")));

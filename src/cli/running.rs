@@ -144,7 +144,7 @@ pub fn refuse_unfinished(reports: &[RunReport]) -> anyhow::Result<()> {
         return Ok(());
     }
     let cases = count_of(left, "case was", "cases were");
-    let sentence = format!("{cases} not run, for this run was interrupted: nothing was judged");
+    let sentence = format!("{cases} not run, because this run was interrupted: nothing was judged");
     Err(Ended::with(Exit::IncompleteMerge, sentence))
 }
 

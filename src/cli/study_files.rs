@@ -60,14 +60,14 @@ fn shipped_of(path: &Path) -> Option<StudySource> {
 
 /// The message about a study that is neither a file nor shipped, with what may have been meant.
 fn not_there(path: &Path) -> String {
-    let told = path.display().to_string();
-    let with_end = PathBuf::from(format!("{told}.toml"));
+    let shown = path.display().to_string();
+    let with_end = PathBuf::from(format!("{shown}.toml"));
     let mut known = shipped_names();
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let help = if with_end.is_file() {
         format!("did you mean the file `{}`?", with_end.display())
     } else if path.extension().is_some() && known.contains(&stem) {
-        format!("the shipped study is called `{stem}`, without folder and extension")
+        format!("the built-in study is called `{stem}`, without folder and extension")
     } else {
         // The study files in the folder, as they would be given.
         let folder = path.parent().unwrap_or(Path::new(""));
@@ -86,11 +86,11 @@ fn not_there(path: &Path) -> String {
         });
         match near {
             Some(near) => format!("did you mean `{near}`?"),
-            None => "`oedometer list` prints the shipped ones, and `oedometer new NAME` writes a new one"
+            None => "`oedometer list` prints the built-in ones, and `oedometer new NAME` writes a new one"
                 .to_owned(),
         }
     };
-    format!("cannot read the study {told}: no such file, and no shipped study: {help}")
+    format!("cannot read the study {shown}: no such file, and no built-in study: {help}")
 }
 
 /// Reads a file, or a pipe of this program.
@@ -227,10 +227,10 @@ pub fn write_tables(
             None => Ok(String::new()),
         })
     };
-    let own = Provenance::of_this_program().sources;
+    let sources = Provenance::of_this_program().sources;
     let foreign = AtomicUsize::new(0);
     let table = write(&study.name, tidy::header_line(), &|record| {
-        foreign.fetch_add(usize::from(record.provenance.sources != own), Ordering::Relaxed);
+        foreign.fetch_add(usize::from(record.provenance.sources != sources), Ordering::Relaxed);
         tidy::rows_of(&study.name, record)
     })?;
     let foreign = foreign.into_inner();

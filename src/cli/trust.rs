@@ -28,7 +28,7 @@ const LONGEST_COMMAND: usize = 300;
 /// Whether studies may start programs.
 #[derive(Clone, Debug, clap::Args)]
 pub struct TrustArguments {
-    /// Start the programs that the studies name in `[[solver]]`; only for studies that you wrote or have read
+    /// Start the programs that the studies name in `[[solver]]`, with your permissions: review the studies first
     #[arg(long, env = "OEDOMETER_ALLOW_SOLVERS", hide_env_values = true, value_parser = FalseyValueParser::new())]
     allow_solvers: bool,
 }
@@ -40,10 +40,10 @@ impl TrustArguments {
             study.may_start_solvers = self.may_start(study, named);
             if !study.may_start_solvers {
                 say!(
-                    "{}: this study runs {} under your account, which you have not allowed yet: its cases \
-                     are not run. Read it, then add --allow-solvers (in a CI: OEDOMETER_ALLOW_SOLVERS=1)",
+                    "{}: this study runs {} with your permissions, which you have not allowed yet: its cases \
+                     are not run. Review it, then add --allow-solvers (in CI: OEDOMETER_ALLOW_SOLVERS=1)",
                     study.name,
-                    told(&starting(study))
+                    commands_of(&starting(study))
                 );
             }
         }
@@ -92,7 +92,7 @@ fn starting(study: &Study) -> Vec<&ExternalSolver> {
 }
 
 /// What would be started, in words that change nothing on a terminal.
-fn told(starting: &[&ExternalSolver]) -> String {
+fn commands_of(starting: &[&ExternalSolver]) -> String {
     let of_one = |solver: &&ExternalSolver| {
         let command: String = solver.command.join(" ").escape_debug().take(LONGEST_COMMAND).collect();
         format!("`{command}` in {}", solver.folder.display().to_string().escape_debug())
@@ -150,8 +150,8 @@ fn is_answered(study: &Study, starting: &[&ExternalSolver]) -> bool {
     if !(std::io::stdin().is_terminal() && std::io::stderr().is_terminal()) {
         return false;
     }
-    say!("{}: this study runs {} under your account.", study.name, told(starting));
-    say!("Start it, now and as long as its commands and files are unchanged? Type `yes`:");
+    say!("{}: this study runs {} with your permissions.", study.name, commands_of(starting));
+    say!("Allow this, now and as long as its commands and files are unchanged? Type `yes`:");
     let mut answer = String::new();
     let mut input = std::io::Read::take(std::io::stdin().lock(), LONGEST_ANSWER);
     let is_yes = input.read_line(&mut answer).is_ok() && ["y", "yes"].contains(&answer.trim());

@@ -100,7 +100,9 @@ type Cause = Box<dyn std::error::Error + Send + Sync>;
 #[non_exhaustive]
 pub enum GoldenError {
     /// The file does not exist.
-    #[error("there is no golden file {0}: look at the results, then `oedometer accept` them with a reason")]
+    #[error(
+        "there are no golden values yet ({0}): if the results look right, `oedometer accept` them with a reason"
+    )]
     Missing(PathBuf),
     /// The file cannot be read or written, or allows what no golden file may.
     #[error("the golden file {path} {what}: {reason}")]
@@ -345,10 +347,7 @@ fn remedy(text: &str, path: &Path, error: &text_error::GoldenTextError) -> Strin
             path = path.display()
         )
     } else {
-        format!(
-            "{error}; take it from a commit by `git checkout HEAD -- {path}`, or mend it",
-            path = path.display()
-        )
+        format!("{error}; restore it with `git checkout HEAD -- {path}`, or fix it", path = path.display())
     }
 }
 
@@ -402,8 +401,8 @@ mod tests {
             assert_eq!(own, GoldenFile::read(&root, study).expect("in the repository"), "{study}");
         }
         let told = GoldenFile::read_or_embedded(nowhere, "no-such-study").expect_err("no file").to_string();
-        let what = "look at the results, then `oedometer accept` them with a reason";
-        assert_eq!(told, format!("there is no golden file nowhere/no-such-study.csv: {what}"));
+        let what = "if the results look right, `oedometer accept` them with a reason";
+        assert_eq!(told, format!("there are no golden values yet (nowhere/no-such-study.csv): {what}"));
         // A file of one's own goes before the one inside, and one of another name is refused.
         let folder = tempfile::TempDir::new().expect("a folder");
         let own = GoldenFile::of("terzaghi-mesh", &[], "one's own");

@@ -180,7 +180,7 @@ impl Jump {
         let needed = self.needed();
         let accepted = if needed <= MOST_TOLERANCE {
             format!(
-                "let the values scatter by that much: `[golden]` with `tolerance = {needed:e}` in the study, and accept again; \
+                "allow that much scatter: `[golden]` with `tolerance = {needed:e}` in the study, and accept again; \
                  without golden values `golden = \"none\"` leaves the verdict to the expectations"
             )
         } else {
@@ -188,8 +188,8 @@ impl Jump {
         };
         format!(
             "`{key}` changes from {before:.6e} to {after:.6e}, by {:.2e}, when the {} changes ({}), and round-off moves \
-             such values by {most:.1e} at most. A solver does so that rounds a number to a whole one, most often the number \
-             of its steps, as in ceil((T − t)/Δt): give that some room, as in ceil((T − t)/Δt − 1e-6). Or {accepted}",
+             such values by {most:.1e} at most. Solvers do so that round a number to an integer, most often the number of \
+             steps, as in ceil((T − t)/Δt): leave a margin, as in ceil((T − t)/Δt − 1e-6). Or {accepted}",
             (after - before).abs(),
             digit.name(),
             digit.input(),

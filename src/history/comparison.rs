@@ -142,14 +142,14 @@ impl StudyComparison {
 
     /// Compares a study's states; tolerances are those of the first.
     pub(crate) fn of(study: &str, before: &StudyState, after: &StudyState) -> Self {
-        let found = &after.golden.values;
+        let values_after = &after.golden.values;
         let seconds = Seconds::of_both(before, after);
-        let cases_apart = cases_apart(before.golden.values.keys(), found.keys());
+        let cases_apart = cases_apart(before.golden.values.keys(), values_after.keys());
         let made_by = [before, after].map(|state| state.made_by.clone());
         let now: Vec<&Case> = after.cases.values().collect();
         let inputs = InputChange::between(&before.cases, &after.cases);
         let (before, _) = before.golden.clone().beside(&now);
-        let differences = compare(&before, found);
+        let differences = compare(&before, values_after);
         let (counters, errors): (Vec<&Difference>, Vec<&Difference>) = differences
             .iter()
             .filter(|difference| difference.golden.is_some() && difference.found.is_some())
@@ -160,13 +160,13 @@ impl StudyComparison {
             |difference: &&Difference| matches!(difference.change, Change::Stale | Change::Smaller);
         let accuracy =
             Trend::of(errors.iter().any(is_better), errors.iter().any(|difference| !is_better(difference)));
-        let keys: BTreeSet<&GoldenKey> = before.values.keys().chain(found.keys()).collect();
+        let keys: BTreeSet<&GoldenKey> = before.values.keys().chain(values_after.keys()).collect();
         Self {
             study: study.to_owned(),
             cases_apart,
             accuracy,
             cost,
-            values: before.values.keys().filter(|key| found.contains_key(*key)).count(),
+            values: before.values.keys().filter(|key| values_after.contains_key(*key)).count(),
             unpaired: differences
                 .iter()
                 .filter(|difference| difference.golden.is_none() || difference.found.is_none())
@@ -174,10 +174,10 @@ impl StudyComparison {
             inputs,
             groups: groups_of(&differences, keys),
             changes: case_changes(&differences),
-            orders: order_changes(&before.values, found, &differences),
+            orders: order_changes(&before.values, values_after, &differences),
             seconds,
             made_by,
-            arrows: arrows(&before.values, found),
+            arrows: arrows(&before.values, values_after),
         }
     }
 }
@@ -190,11 +190,11 @@ pub(crate) fn compare_states(
 ) -> (Vec<StudyComparison>, Vec<String>) {
     let wanted = |study: &&String| only.is_empty() || only.contains(study);
     let mut notes: Vec<String> = before.notes.iter().chain(&after.notes).cloned().collect();
-    let (mut found, mut gone, mut new) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut both, mut gone, mut new) = (Vec::new(), Vec::new(), Vec::new());
     let names: BTreeSet<&String> = before.studies.keys().chain(after.studies.keys()).filter(wanted).collect();
     for name in names {
         match (before.studies.get(name), after.studies.get(name)) {
-            (Some(a), Some(b)) => found.push(StudyComparison::of(name, a, b)),
+            (Some(a), Some(b)) => both.push(StudyComparison::of(name, a, b)),
             (Some(_), None) => gone.push(name.as_str()),
             (None, _) => new.push(name.as_str()),
         }
@@ -211,7 +211,7 @@ pub(crate) fn compare_states(
     {
         notes.push(format!("neither state has a study `{study}`"));
     }
-    (found, notes)
+    (both, notes)
 }
 
 /// Every case that has steps and an error in both states: the error of the pressure, or of the last quantity there is, at
@@ -273,11 +273,11 @@ impl OrderChange {
 
     /// The series with its order before and after.
     pub fn sentence(&self) -> String {
-        let told = |state: &Behaviour| match state.order {
+        let shown = |state: &Behaviour| match state.order {
             Some(order) => format!("{order:.2}"),
             None => format!("none, {}", state.class),
         };
-        format!("{} {} → {}", self.series, told(&self.before), told(&self.after))
+        format!("{} {} → {}", self.series, shown(&self.before), shown(&self.after))
     }
 }
 
@@ -327,8 +327,8 @@ fn behaviours(
         let signed = if has_signs { levels.iter().map(|(_, error)| *error).collect() } else { Vec::new() };
         let tolerance = Some(ITERATIONS);
         let context = Context { round_off: Some(ROUND_OFF), tolerance, signed, ..Context::default() };
-        let found = classify(&ErrorSeries::new(levels.iter().map(level).collect()), &context);
-        Behaviour { class: found.class.name(), order: found.order }
+        let classification = classify(&ErrorSeries::new(levels.iter().map(level).collect()), &context);
+        Behaviour { class: classification.class.name(), order: classification.order }
     };
     series.into_iter().map(|(key, levels)| (key, behaviour(levels))).collect()
 }

@@ -13,7 +13,7 @@ pub(crate) enum GitError {
     #[error("cannot start `git`: {0}; install it, or give folders of records")]
     NotStartable(std::io::Error),
     /// No repository holds the folder.
-    #[error("{} is in no git repository: run the command inside the repository that holds the golden values", .0.display())]
+    #[error("{} is not in a git repository: run the command inside the repository that holds the golden values", .0.display())]
     NoRepository(PathBuf),
     /// A revision that the repository does not have.
     #[error("`{revision}` is neither a folder nor a revision of {}{}", root.display(), shallow_hint(*is_shallow))]

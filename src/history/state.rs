@@ -77,12 +77,12 @@ impl State {
             if records.len() < hashes.len() {
                 let unread = count_of(hashes.len() - records.len(), "record", "records");
                 state.notes.push(format!(
-                    "{unread} of `{name}` in {} passed over: of another layout or damaged; run the study again",
+                    "{unread} of `{name}` in {} skipped: of another layout, or damaged; run the study again",
                     folder.display()
                 ));
             }
             let earlier = NamedCases::read(store.folder()).and_then(|named| leave_out(&named, &mut records));
-            state.notes.extend(earlier.map(|told| format!("`{name}` in {}: {told}", folder.display())));
+            state.notes.extend(earlier.map(|note| format!("`{name}` in {}: {note}", folder.display())));
             if !records.is_empty() {
                 state.studies.insert(name.clone(), StudyState::of_records(&name, &records));
             }
@@ -167,8 +167,8 @@ impl StudyState {
             let about = record.outside_run()?;
             Some(format!("`{}` by {}", record.case.method, about.made_by()))
         };
-        let own = records.iter().map(|record| record.provenance.made_by());
-        let made_by: BTreeSet<String> = own.chain(records.iter().filter_map(of_others)).collect();
+        let programs = records.iter().map(|record| record.provenance.made_by());
+        let made_by: BTreeSet<String> = programs.chain(records.iter().filter_map(of_others)).collect();
         Self {
             golden: GoldenFile::of(study, records, "records"),
             cases: records.iter().map(|record| (record.case.label(), record.case.clone())).collect(),
@@ -187,7 +187,7 @@ pub(crate) fn golden_name<'a>(path: &'a str, folder: &str) -> Option<&'a str> {
 /// The sentence about a golden file of a layout that this program does not read.
 pub(crate) fn unreadable(commit: &Commit, path: &str, reason: &GoldenTextError) -> String {
     let reason = reason.to_string();
-    format!("{path} at {} is passed over: {}", commit.short(), reason.lines().next().unwrap_or_default())
+    format!("{path} at {} is skipped: {}", commit.short(), reason.lines().next().unwrap_or_default())
 }
 
 /// The cases of a study as it stood then; `None` where this program refuses it.
@@ -235,10 +235,10 @@ pub(crate) fn states_of_commands(study: &[Study; 2], names: [&str; 2], rounds: u
             let report = run_study(&study[side], &RunOptions::whole(Tier::Full, 1), None, &|_| {});
             let failed = report.records.iter().filter(|record| record.status != Status::Ok);
             let failed = failed.map(|record| format!("{}: {}", record.case.label(), record.status.name()));
-            let told = report.errors.iter().map(ToString::to_string).chain(failed);
+            let failures = report.errors.iter().map(ToString::to_string).chain(failed);
             if round == 0 {
                 let name = states[side].name.clone();
-                states[side].notes.extend(told.map(|what| format!("{name}: {what}")));
+                states[side].notes.extend(failures.map(|what| format!("{name}: {what}")));
             }
             states[side].add_round(&study[side].name, &report.records);
         }
@@ -249,16 +249,16 @@ pub(crate) fn states_of_commands(study: &[Study; 2], names: [&str; 2], rounds: u
 impl State {
     /// Takes the values of the first round and the times of each.
     fn add_round(&mut self, study: &str, records: &[Record]) {
-        let found = StudyState::of_records(study, records);
+        let state = StudyState::of_records(study, records);
         let Some(first) = self.studies.get_mut(study) else {
-            self.studies.insert(study.to_owned(), found);
+            self.studies.insert(study.to_owned(), state);
             return;
         };
-        let others = compare(&first.golden, &found.golden.values).len();
+        let others = compare(&first.golden, &state.golden.values).len();
         if others > 0 {
             self.notes.push(format!("{}: {others} values of {study} differ from round to round", self.name));
         }
-        for (case, seconds) in found.seconds {
+        for (case, seconds) in state.seconds {
             first.seconds.entry(case).or_default().extend(seconds);
         }
     }

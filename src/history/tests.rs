@@ -139,7 +139,8 @@ fn what_git_does_not_know_is_told_in_sentences() {
     assert_eq!(told, "`git cat-file -p nowhere` failed: fatal: Not a valid object name nowhere");
     let outside = TempDir::new().expect("a folder");
     let told = Repository::around(outside.path()).expect_err("none").to_string();
-    let what = "is in no git repository: run the command inside the repository that holds the golden values";
+    let what =
+        "is not in a git repository: run the command inside the repository that holds the golden values";
     assert_eq!(told, format!("{} {what}", outside.path().display()));
     // Only what lies where it is asked for is a change of it.
     let dirty = |words: &[&str]| repository.is_dirty(words);
@@ -174,9 +175,9 @@ fn timelines_are_those_that_are_asked_for_with_what_is_passed_over() {
         ("\u{fc}", "End", "by another name", Same, Same),
     ];
     assert_eq!(told, wanted);
-    let json = "1 golden file in JSON is passed over, like golden/old.json: golden values are read from layout 2 on, which is \
+    let json = "1 golden file in JSON is skipped, like golden/old.json: golden values are read from layout 2 on, which is \
                 CSV";
-    let bad = format!("golden/bad.csv at {} is passed over: line 1: the file ends within it", end.short());
+    let bad = format!("golden/bad.csv at {} is skipped: line 1: the file ends within it", end.short());
     assert_eq!(notes, [json, &bad]);
     let named = |only: &[&str]| {
         let (lines, notes) = of(only);
@@ -208,7 +209,7 @@ fn a_revision_has_the_studies_of_its_folder_with_the_inputs_that_they_had_then()
         assert!(state.studies["b"].cases.is_empty(), "no study of its name");
     }
     let state = of("HEAD", "golden").expect("a state");
-    let bad = format!("golden/bad.csv at {} is passed over: line 1: the file ends within it", short("HEAD"));
+    let bad = format!("golden/bad.csv at {} is skipped: line 1: the file ends within it", short("HEAD"));
     assert_eq!(names(&state), ["d", "\u{fc}"]);
     assert_eq!(state.notes, [bad]);
     assert_eq!(of("HEAD", "other").expect("a state").studies.keys().collect::<Vec<_>>(), ["a"]);
@@ -233,10 +234,8 @@ fn records_that_cannot_be_read_are_counted_and_a_folder_without_any_is_refused()
         let state = State::of_records(at).expect("a state");
         assert_eq!(state.name, at.display().to_string());
         assert_eq!(state.studies.get("s").map_or(0, |study| study.cases.len()), cases);
-        let end = format!(
-            "of `s` in {} passed over: of another layout or damaged; run the study again",
-            at.display()
-        );
+        let end =
+            format!("of `s` in {} skipped: of another layout, or damaged; run the study again", at.display());
         let wanted: Vec<String> = passed_over.iter().map(|count| format!("{count} {end}")).collect();
         assert_eq!(state.notes, wanted);
     };

@@ -90,7 +90,7 @@ pub(crate) fn timelines(
     let mut notes = Vec::new();
     if let Some(first) = others.first() {
         notes.push(format!(
-            "{} passed over, like {folder}/{first}.json: golden values are read from layout 2 on, which is CSV",
+            "{} skipped, like {folder}/{first}.json: golden values are read from layout 2 on, which is CSV",
             count_of(others.len(), "golden file in JSON is", "golden files in JSON are")
         ));
     }
@@ -135,15 +135,15 @@ impl Step {
         step.error_index *= mean_ratio(before, golden, |key| key.measure.is_error());
         step.work_index *= mean_ratio(before, golden, |key| key.measure == Measure::Steps);
         let differences = compare(before, &golden.values);
-        let paired = |one: &&Difference| one.golden.is_some() && one.found.is_some();
+        let paired = |difference: &&Difference| difference.golden.is_some() && difference.found.is_some();
         step.moved = differences.iter().filter(paired).count();
         step.unpaired = differences.len() - step.moved;
         let errors = differences.iter().filter(|one| one.key.measure.is_error());
         step.largest_change = errors.filter_map(Difference::relative_change).fold(0.0, f64::max);
         let state = |golden: &GoldenFile| StudyState::of_golden(golden.clone());
         if !case_changes(&differences).is_empty() {
-            let found = StudyComparison::of(&golden.study, &state(before), &state(golden));
-            (step.accuracy, step.cost) = (found.accuracy, found.cost);
+            let comparison = StudyComparison::of(&golden.study, &state(before), &state(golden));
+            (step.accuracy, step.cost) = (comparison.accuracy, comparison.cost);
         }
         step
     }

@@ -114,7 +114,7 @@ impl StudyCheck {
         let absent = Absent::among(records);
         let compares_golden = study.golden != GoldenRule::None;
         let unused = (golden.is_ok() && !compares_golden).then(|| {
-            "the golden values of this study are not compared, because it says `golden = \"none\"`".to_owned()
+            "the golden values of this study are not compared, because it has `golden = \"none\"`".to_owned()
         });
         let golden = golden.map(|golden| golden.allowing(study.golden));
         let golden = if compares_golden { golden } else { Err(GoldenError::Missing(PathBuf::new())) };

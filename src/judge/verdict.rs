@@ -108,8 +108,14 @@ fn conclude(
     sound: bool,
 ) -> (VerdictOutcome, String) {
     let failed: Vec<_> = checks.iter().filter(|check| !check.pass).collect();
-    let sentence =
-        |checks: &[&Check]| checks.iter().map(|check| check.reason.as_str()).collect::<Vec<_>>().join("; ");
+    // A reason that a later one contains is said once.
+    let sentence = |checks: &[&Check]| {
+        let reasons = checks.iter().enumerate().filter_map(|(at, check)| {
+            let is_repeated = checks[at + 1..].iter().any(|later| later.reason.contains(&check.reason));
+            (!is_repeated).then_some(check.reason.as_str())
+        });
+        reasons.collect::<Vec<_>>().join("; ")
+    };
     // A known failure excuses a wrong result, not a missing one.
     let absent = !failed.is_empty() && classification.class == Class::NotEvaluable
         || failed.iter().any(|check| check.name == "rows");
@@ -188,7 +194,7 @@ fn class_found(wanted: Class, found: &Classification, series: &ErrorSeries) -> C
             Class::NotEvaluable if !errors.is_empty() => format!("; the errors are {}", errors.join(", ")),
             _ => String::new(),
         };
-        format!("{} instead of {wanted}: {}{advice}{errors}", found.class, found.reason)
+        format!("{}, expected {wanted}: {}{advice}{errors}", found.class, found.reason)
     };
     Check { name: "class".to_owned(), pass, measured: None, reason }
 }
@@ -199,6 +205,10 @@ fn order_found(band: OrderBand, class: Option<Class>, found: &Classification) ->
         Some(measured) if class == Some(found.class) => {
             let told = format!("order {}", order(measured));
             Check::compared("order", band.contains(measured), measured, &told, IN, &limits)
+        }
+        // That the class is another one is said by its own check.
+        _ if class.is_some_and(|class| class != found.class) => {
+            Check::failed("order", format!("no order to compare with {limits}"))
         }
         _ => {
             let reason = format!("no order to compare with {limits}: the series is {}", found.class);
@@ -251,11 +261,12 @@ fn spread_found(bound: ErrorBound, series: &ErrorSeries) -> Check {
 fn floor_found(band: FloorBand, series: &ErrorSeries, formal: Option<f64>, found: &Classification) -> Check {
     let without = [Class::NotEvaluable, Class::Divergent, Class::Oscillatory];
     if without.contains(&found.class) {
-        return Check::failed("floor", format!("no floor to judge: the series is {}", found.class));
+        return Check::failed("floor", format!("no error plateau to judge: the series is {}", found.class));
     }
     let levels = series.levels().len();
     if found.floor.is_none() && levels < FLOOR_LEVELS {
-        let reason = format!("no floor to judge: {levels} levels cannot tell one from none, add a level");
+        let reason =
+            format!("no error plateau to judge: {levels} levels cannot tell one from none; add a level");
         return Check::failed("floor", reason);
     }
     // A floor may bend the series without governing it yet.
@@ -265,7 +276,14 @@ fn floor_found(band: FloorBand, series: &ErrorSeries, formal: Option<f64>, found
     } else {
         (IN, format!("{} … {}", short(band.above), short(band.below)))
     };
-    Check::compared("floor", band.contains(floor), floor, &format!("floor {}", short(floor)), words, &limits)
+    Check::compared(
+        "floor",
+        band.contains(floor),
+        floor,
+        &format!("error plateau {}", short(floor)),
+        words,
+        &limits,
+    )
 }
 
 fn oscillation_found(bound: f64, oscillation: Option<f64>) -> Check {
@@ -446,7 +464,7 @@ mod tests {
             "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = [\"MPM\"]\n\
              integrator = [\"implicit\"]\ncells = [2, 4]\n",
         );
-        let reason = "it says that it cannot run here".to_owned();
+        let reason = "it reports that it cannot run here".to_owned();
         records[0].status = Status::Failed(Failure::of_attached(FailureKind::Skipped, reason));
         records
     }

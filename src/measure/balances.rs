@@ -16,17 +16,23 @@ use oedometer_soil::elementary;
 /// When the scene's own reference refuses a depth.
 pub fn start_checks(
     case: &Case,
-    own: Option<&Reference>,
+    reference: Option<&Reference>,
     start: &Snapshot,
 ) -> Result<StartChecks, ExactError> {
     let soil = &case.material;
     let load = case.column.pressure_scale();
     let samples = &start.points;
-    let found = samples.water.as_ref().map_or((&*samples.initial_height, &*samples.pressure), |water| {
-        (&*water.initial_height, &*water.pressure)
-    });
-    let expected = case.scene.expected_start_pressures(&case.column, soil, own, found)?;
-    let off = found.1.iter().zip(&expected).map(|(pressure, expected)| (pressure - expected).abs() / load);
+    let places_and_pressures =
+        samples.water.as_ref().map_or((&*samples.initial_height, &*samples.pressure), |water| {
+            (&*water.initial_height, &*water.pressure)
+        });
+    let expected =
+        case.scene.expected_start_pressures(&case.column, soil, reference, places_and_pressures)?;
+    let off = places_and_pressures
+        .1
+        .iter()
+        .zip(&expected)
+        .map(|(pressure, expected)| (pressure - expected).abs() / load);
     Ok(StartChecks {
         points: samples.pressure.len() + samples.water.as_ref().map_or(0, |water| water.pressure.len()),
         points_expected: case.expected_points(),

@@ -120,9 +120,9 @@ impl SlowestWave {
             rule => rule.first(&case.step_scales(limit)),
         };
         let by_steps = 0.5 * self.frequency * self.frequency * step;
-        let one = case.seconds_per_time_factor();
+        let seconds = case.seconds_per_time_factor();
         let lost = case.time_factors.iter().map(|factor| {
-            let time = factor * one;
+            let time = factor * seconds;
             -elementary::exp(-self.damping * time) * elementary::exp_m1(-by_steps * time)
         });
         lost.fold(0.0, f64::max)

@@ -18,39 +18,42 @@ pub const SPURIOUS_VELOCITY: &str = "spurious_velocity";
 /// error where all of the load acts at once.
 pub fn measures_of(
     case: &Case,
-    own: Option<&Reference>,
+    reference: Option<&Reference>,
     balance: &[Balance],
     snapshots: &[Snapshot],
 ) -> Vec<MeasureRow> {
-    let Some(own) = own else { return Vec::new() };
+    let Some(reference) = reference else { return Vec::new() };
     if case.scene.measures(Quantity::LoadFactor) {
-        return measures_of_footing(case, own, snapshots);
+        return measures_of_footing(case, reference, snapshots);
     }
     let mut measures = Vec::new();
-    if let (Some(found), Some((time_factor, height))) = (pressure_peak(case, snapshots), own.pressure_peak())
+    if let (Some(found), Some((time_factor, height))) =
+        (pressure_peak(case, snapshots), reference.pressure_peak())
     {
-        measures.push(row(own, "peak_time_factor", None, found.time_factor, time_factor));
-        measures.push(row(own, "peak_pressure", None, found.height, height));
+        measures.push(row(reference, "peak_time_factor", None, found.time_factor, time_factor));
+        measures.push(row(reference, "peak_pressure", None, found.height, height));
     }
     for output in balance {
         let layers = output.layers.as_ref();
         let values = [
             (SPURIOUS_VELOCITY, output.spurious_velocity, 0.0),
-            ("pore_water", layers.map(|one| one.pore_water), 0.0),
-            ("water_left_error", layers.map(|one| one.water_left_error), 0.0),
-            ("largest_pressure", layers.and_then(|one| one.largest_pressure), 1.0),
+            ("pore_water", layers.map(|measured| measured.pore_water), 0.0),
+            ("water_left_error", layers.map(|measured| measured.water_left_error), 0.0),
+            ("largest_pressure", layers.and_then(|measured| measured.largest_pressure), 1.0),
         ];
         let time = Some(output.time_factor);
         measures.extend(
-            values.into_iter().filter_map(|(name, found, exact)| Some(row(own, name, time, found?, exact))),
+            values
+                .into_iter()
+                .filter_map(|(name, found, exact)| Some(row(reference, name, time, found?, exact))),
         );
     }
     measures
 }
 
 /// A measure against the exact value of a reference.
-fn row(own: &Reference, name: &str, time_factor: Option<f64>, found: f64, exact: f64) -> MeasureRow {
-    MeasureRow { name: name.to_owned(), time_factor, reference: own.name().to_owned(), found, exact }
+fn row(reference: &Reference, name: &str, time_factor: Option<f64>, found: f64, exact: f64) -> MeasureRow {
+    MeasureRow { name: name.to_owned(), time_factor, reference: reference.name().to_owned(), found, exact }
 }
 
 /// Time and height of the highest pressure at an impermeable end, as of Mandel and of Cryer, where it rises before it
@@ -113,14 +116,19 @@ pub fn load_factor(case: &Case, force: f64) -> Option<f64> {
 }
 
 /// The error of the load factor of a state.
-pub fn load_error(case: &Case, own: &Reference, time_factor: f64, snapshot: &Snapshot) -> Option<ErrorRow> {
+pub fn load_error(
+    case: &Case,
+    reference: &Reference,
+    time_factor: f64,
+    snapshot: &Snapshot,
+) -> Option<ErrorRow> {
     let found = load_factor(case, snapshot.plate_force?)?;
     Some(ErrorRow {
         time_factor,
         quantity: Quantity::LoadFactor,
         sample: Sample::Surface,
         norm: Norm::Relative,
-        reference: own.name().to_owned(),
+        reference: reference.name().to_owned(),
         value: found / LOAD_FACTOR - 1.0,
         absolute: found - LOAD_FACTOR,
     })
@@ -128,21 +136,21 @@ pub fn load_error(case: &Case, own: &Reference, time_factor: f64, snapshot: &Sna
 
 /// The load factor at every output; between the last two how it grows with the settlement over the width, which is nothing
 /// where nothing locks; and the oscillation of the pressure at the last one.
-fn measures_of_footing(case: &Case, own: &Reference, snapshots: &[Snapshot]) -> Vec<MeasureRow> {
+fn measures_of_footing(case: &Case, reference: &Reference, snapshots: &[Snapshot]) -> Vec<MeasureRow> {
     let outputs = case.time_factors.iter().zip(snapshots);
     let loads: Vec<(f64, f64)> = outputs
         .filter_map(|(time, snapshot)| Some((*time, load_factor(case, snapshot.plate_force?)?)))
         .collect();
     let name = Quantity::LoadFactor.name();
     let mut measures: Vec<MeasureRow> =
-        loads.iter().map(|(time, load)| row(own, name, Some(*time), *load, LOAD_FACTOR)).collect();
+        loads.iter().map(|(time, load)| row(reference, name, Some(*time), *load, LOAD_FACTOR)).collect();
     if let [.., (before, lower), (after, upper)] = loads[..] {
-        measures.push(row(own, "plateau_slope", None, (upper - lower) / (after - before), 0.0));
+        measures.push(row(reference, "plateau_slope", None, (upper - lower) / (after - before), 0.0));
     }
     if let Some(last) = snapshots.last() {
         let across = case.column.cells_across(case.cells).unwrap_or(1) * case.points_per_cell;
         let of_strength = oscillation(&last.points, across) / case.material.undrained_strength;
-        measures.push(row(own, "pressure_oscillation", None, of_strength, 0.0));
+        measures.push(row(reference, "pressure_oscillation", None, of_strength, 0.0));
     }
     measures
 }

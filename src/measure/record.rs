@@ -56,7 +56,7 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
         return results_outside(case, snapshots).added_to(record, references);
     };
     let share = match &inside.critical_step {
-        Some(found) => found.observed.map_or(1.0, |observed| observed / found.predicted),
+        Some(critical) => critical.observed.map_or(1.0, |observed| observed / critical.predicted),
         None if case.task == Task::Stability => 1.0,
         None => steps.largest / steps.predicted_critical,
     };
@@ -66,7 +66,8 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
         return Ok(Record { stability: critical_step, ..record });
     }
     let parameters = column_parameters(&case.column, &case.material);
-    let point = |one: &HistoryPoint| (parameters.time_factor(one.time), one.settlement, one.plate_force);
+    let point =
+        |point: &HistoryPoint| (parameters.time_factor(point.time), point.settlement, point.plate_force);
     let results = Results {
         times: case.time_factors.to_vec(),
         curve: history.iter().map(point).collect(),
@@ -109,26 +110,26 @@ impl Results<'_> {
             .iter()
             .map(|kind| known_reference(case, kind.for_soil(&case.material), &prepared))
             .collect::<Result<_, _>>()?;
-        let own = references.first().map(|own| &**own);
+        let primary = references.first().map(|primary| &**primary);
         let mut errors = Vec::new();
         for ((asked, time), snapshot) in case.time_factors.iter().zip(&self.times).zip(&self.snapshots) {
             // Runs of this program are not compared with a theory that leaves out the inertia they have.
-            let hold = references
-                .iter()
-                .filter(|one| record.outside_run().is_some() || inertia_rules(case, one.kind()).is_none());
+            let hold = references.iter().filter(|reference| {
+                record.outside_run().is_some() || inertia_rules(case, reference.kind()).is_none()
+            });
             for reference in hold {
                 let rows = snapshot_errors(case, reference, *time, snapshot)?;
                 errors.extend(rows.into_iter().map(|row| ErrorRow { time_factor: *asked, ..row }));
             }
         }
-        let final_settlement = match own {
+        let final_settlement = match primary {
             None => f64::NAN,
             // Where nothing settles, the settlement that a load of the same size would cause.
-            Some(own) if own.kind() == ReferenceKind::AtRest || own.kind().is_manufactured() => {
+            Some(primary) if primary.kind() == ReferenceKind::AtRest || primary.kind().is_manufactured() => {
                 column_parameters(&case.column, &case.material).final_settlement()
             }
-            Some(own) if own.kind() == ReferenceKind::Footing => own.settlement(1.0)?,
-            Some(own) => own.displacement_scale()?,
+            Some(primary) if primary.kind() == ReferenceKind::Footing => primary.settlement(1.0)?,
+            Some(primary) => primary.displacement_scale()?,
         };
         let degree = |(time_factor, settlement, force): &(f64, f64, Option<f64>)| HistoryRow {
             time_factor: *time_factor,
@@ -149,12 +150,15 @@ impl Results<'_> {
             outputs.map(balance_at).collect()
         });
         Ok(Record {
-            start: self.start.map(|start| start_checks(case, own, start)).transpose()?,
-            measures: measures_of(case, own, &balance, &self.snapshots),
+            start: self.start.map(|start| start_checks(case, primary, start)).transpose()?,
+            measures: measures_of(case, primary, &balance, &self.snapshots),
             balance,
             errors,
             history: history.into_iter().filter(|row| row.degree_of_consolidation.is_finite()).collect(),
-            references: references.iter().map(|one| reference_use(case, one)).collect::<Result<_, _>>()?,
+            references: references
+                .iter()
+                .map(|reference| reference_use(case, reference))
+                .collect::<Result<_, _>>()?,
             snapshots: self.snapshots,
             ..record
         })

@@ -28,7 +28,7 @@ const SHIFTED: f64 = 2.0;
 /// stress that is wrong by the load.
 const OUT_OF_BALANCE: f64 = 1.0;
 /// Bound on the residual of the equilibrium where points move. In 400 random runs at 15 to 50 % strain the pressures beyond it
-/// were 3 % of the load off, or more; of hat functions, whose stresses jump as points cross cells, the settlement was 10 % off.
+/// were 3 % of the load off, or more; of linear shape functions, whose stresses jump as points cross cells, the settlement was 10 % off.
 /// Of other programs, whose stresses and pressures may belong to different places, four times that.
 const OUT_OF_BALANCE_MOVING: [f64; 2] = [0.1, 0.4];
 /// Wave time over consolidation time up to which a column is in balance except for its first waves.
@@ -346,19 +346,19 @@ pub fn worst_of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Record
 
 /// Whether a check is worse than another of the same kind; a judged one is worse than one that is not judged, and NaN is
 /// worst.
-fn is_worse(one: &RecordCheck, other: &RecordCheck) -> bool {
+fn is_worse(check: &RecordCheck, other: &RecordCheck) -> bool {
     let size = |check: &RecordCheck| match check.bound {
         _ if check.value.is_nan() => (check.bound.is_some(), f64::INFINITY),
         Some(bound) if bound > 0.0 => (true, check.value.abs() / bound),
         Some(_) => (true, if check.holds() { 0.0 } else { f64::INFINITY }),
         None => (false, check.value.abs()),
     };
-    size(one) > size(other)
+    size(check) > size(other)
 }
 
 /// Sentences on everything beyond its bound.
 pub fn complaints(record: &Record) -> Vec<String> {
-    let told = |check: RecordCheck, when: &str| {
+    let complaint = |check: RecordCheck, when: &str| {
         let bound = check.bound.filter(|_| !check.holds())?;
         if check.what == POINTS_MISSING {
             return record.start.map(|start| {
@@ -374,10 +374,10 @@ pub fn complaints(record: &Record) -> Vec<String> {
         }
         Some(format!("{} is {:.2e}{when}, more than {bound:.1e}", check.what, check.value))
     };
-    let at_start = start_checks(record).into_iter().filter_map(|check| told(check, ""));
+    let at_start = start_checks(record).into_iter().filter_map(|check| complaint(check, ""));
     let at_outputs = record.balance.iter().flat_map(|balance| {
         let when = format!(" at T_v = {}", typed(balance.time_factor));
-        balance_checks(record, balance).into_iter().filter_map(move |check| told(check, &when))
+        balance_checks(record, balance).into_iter().filter_map(move |check| complaint(check, &when))
     });
     at_start.chain(at_outputs).collect()
 }

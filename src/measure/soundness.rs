@@ -17,10 +17,10 @@ pub fn complaints_of_run(record: &Record) -> Vec<String> {
 
 /// What is wrong with a record, as sentences; empty where it is sound.
 pub fn complaints(record: &Record) -> Vec<String> {
-    let mut found = complaints_of_run(record);
-    found.extend(record.references.iter().filter_map(|reference| reference.does_not_hold.clone()));
+    let mut sentences = complaints_of_run(record);
+    sentences.extend(record.references.iter().filter_map(|reference| reference.does_not_hold.clone()));
     if let Some(row) = record.errors.iter().find(|row| !row.value.is_finite()) {
-        found.push(format!("the error of {} is {}", row.quantity.name(), row.value));
+        sentences.push(format!("the error of {} is {}", row.quantity.name(), row.value));
     }
     for reference in &record.references {
         let poor = poor_outputs(record, reference);
@@ -28,9 +28,9 @@ pub fn complaints(record: &Record) -> Vec<String> {
             record.case.time_factors.iter().filter(|time| smallest_at(record, reference, **time).is_some());
         let none_is_left = poor.len() == outputs.count();
         let worst = poor.iter().min_by(|a, b| a.error.total_cmp(&b.error));
-        found.extend(worst.filter(|_| none_is_left).map(PoorOutput::sentence));
+        sentences.extend(worst.filter(|_| none_is_left).map(PoorOutput::sentence));
     }
-    found
+    sentences
 }
 
 /// An output at which a reference is not accurate enough to judge by.
@@ -91,7 +91,7 @@ pub fn is_unjudged(record: &Record, reference: &str, time_factor: f64) -> bool {
     let used = record.references.iter().find(|used| used.name == reference);
     // What is accurate to round-off serves every result, at no cost.
     let poor = used.filter(|used| used.tail_bound.is_nan() || used.tail_bound > ROUND_OFF);
-    poor.is_some_and(|used| poor_outputs(record, used).iter().any(|one| one.time_factor == time_factor))
+    poor.is_some_and(|used| poor_outputs(record, used).iter().any(|output| output.time_factor == time_factor))
 }
 
 /// Whether the numbers of a record may be quoted: its run ended well, and nothing is said against it.

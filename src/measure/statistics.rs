@@ -9,8 +9,8 @@ use statrs::statistics::{Data, Max, Min, OrderStatistics};
 
 /// The larger of two numbers; NaN is larger than any. `f64::max` drops NaN, so that a run without an answer would
 /// pass.
-pub fn larger(one: f64, other: f64) -> f64 {
-    if one > other || one.is_nan() { one } else { other }
+pub fn larger(first: f64, second: f64) -> f64 {
+    if first > second || first.is_nan() { first } else { second }
 }
 
 /// The largest of numbers, or NaN where one of them is; `None` for no numbers.

@@ -29,8 +29,8 @@ pub fn known_or<T: Clone>(
     key: String,
     make: impl FnOnce() -> Result<T, ExactError>,
 ) -> Result<T, ExactError> {
-    if let Some(found) = known.lock().ok().and_then(|known| known.get(&key).cloned()) {
-        return Ok(found);
+    if let Some(kept) = known.lock().ok().and_then(|known| known.get(&key).cloned()) {
+        return Ok(kept);
     }
     let made = make()?;
     if let Ok(mut known) = known.lock() {

@@ -59,7 +59,7 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
     let mut chart = Chart::new(
         "Load and settlement of the plate",
         ChartAxis::linear("settlement over the width u/B (–)"),
-        ChartAxis::linear("load factor F/(B c_u) (–)").between(0.0, HIGHEST * LOAD_FACTOR),
+        ChartAxis::linear("bearing-capacity factor F/(B c_u) (–)").between(0.0, HIGHEST * LOAD_FACTOR),
     );
     chart.size = Size::PANEL;
     // The place of a method among all of the study is its colour.

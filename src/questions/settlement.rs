@@ -137,7 +137,7 @@ fn settlements(study: &Study, records: &[Record]) -> Result<Vec<RunSettlements>,
     .collect()
 }
 
-const HEADER: &str = "> time | > T_v | > share of final | > exact, mm | > this run, mm | > error";
+const HEADER: &str = "> time | > T_v | > degree of consolidation U | > exact, mm | > this run, mm | > error";
 
 /// The tables: one per run, or, where each run has a single output, one with a row per run.
 fn tables(all: &[RunSettlements]) -> Vec<Table> {

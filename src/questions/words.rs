@@ -63,21 +63,21 @@ pub fn solution(reference: &str) -> String {
         NEXT_FINER => "the next finer run",
         "terzaghi" => "Terzaghi's solution with compressible water",
         "terzaghi-incompressible" => "Terzaghi's solution",
-        "single-mode" => "the exact slowest mode",
+        "single-mode" => "the exact first eigenmode",
         "xie-leo" => "Xie & Leo's solution",
         "dynamic-column" => "the exact column with inertia",
-        "dynamic-single-mode" => "the exact slowest mode with inertia",
+        "dynamic-single-mode" => "the exact first eigenmode with inertia",
         "standing-wave" => "the exact standing wave",
         "large-strain" => "the exact large-strain solution of its own equations",
         "cosine-layer" => "the exact layer with compressible water",
         "cosine-layer-incompressible" => "the exact layer with incompressible water",
         "mandel" => "Mandel's solution with compressible water",
-        "at-rest" => "the state of rest",
+        "at-rest" => "hydrostatic equilibrium",
         "layered" => "the exact column of layers",
         "yield-front" => "the exact yield front",
         "sealed-element" => "the exact sealed column",
         "footing" => "Prandtl's load at collapse",
-        "manufactured-box" | "manufactured-shear" | "manufactured-vortex" => "the manufactured motion",
+        "manufactured-box" | "manufactured-shear" | "manufactured-vortex" => "the manufactured solution",
         other => return format!("the exact solution `{other}`"),
     };
     words.to_owned()
@@ -95,7 +95,7 @@ pub fn quantity(quantity: Quantity) -> &'static str {
         Quantity::EffectiveStress => "effective stress",
         Quantity::Displacement => "displacement",
         Quantity::Settlement => "settlement",
-        Quantity::LoadFactor => "load factor",
+        Quantity::LoadFactor => "bearing-capacity factor",
     }
 }
 
@@ -202,7 +202,12 @@ mod tests {
                 "relative L_2 error, displacement (–)",
             ),
             (Settlement, Sample::Surface, "settlement of the surface", "relative error of settlement (–)"),
-            (LoadFactor, Sample::Surface, "load factor of the surface", "relative error of load factor (–)"),
+            (
+                LoadFactor,
+                Sample::Surface,
+                "bearing-capacity factor of the surface",
+                "relative error of bearing-capacity factor (–)",
+            ),
         ];
         for (quantity, sample, words, of_axis) in all {
             assert_eq!((&*measured(quantity, sample), &*error_axis(quantity)), (words, of_axis));

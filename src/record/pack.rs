@@ -302,17 +302,17 @@ impl Writer {
     /// machines do not see.
     fn open(folder: &Path, index: &mut Index) -> io::Result<Self> {
         fs::create_dir_all(folder)?;
-        let own = format!("{}.", place_of_this_process());
+        let prefix = format!("{}.", place_of_this_process());
         let is_own =
-            |path: &Path| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(&own));
+            |path: &Path| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(&prefix));
         let free = index.packs.iter().filter(|(path, _)| is_own(path)).find_map(|(path, _)| {
             let file = File::options().write(true).open(path).ok()?;
             file.try_lock().ok().map(|()| (path.clone(), file))
         });
-        let (path, mut file) = if let Some(found) = free {
-            found
+        let (path, mut file) = if let Some(pack) = free {
+            pack
         } else {
-            let path = folder.join(format!("{own}{}{ENDING}", random_word()));
+            let path = folder.join(format!("{prefix}{}{ENDING}", random_word()));
             let file = File::create_new(&path)?;
             // Where the file system has no locks the random name alone keeps others away.
             let _ = file.try_lock();
@@ -387,7 +387,7 @@ impl Packs {
     pub fn damages(&self) -> Vec<Damage> {
         let mut damages = self.state().index.damages.clone();
         // A pack that is read on finds a cut end again, behind what other packs have.
-        damages.sort_by(|one, other| (&one.pack, one.from).cmp(&(&other.pack, other.from)));
+        damages.sort_by(|damage, other| (&damage.pack, damage.from).cmp(&(&other.pack, other.from)));
         let is_written = |path: &Path| {
             File::open(path)
                 .is_ok_and(|file| matches!(file.try_lock_shared(), Err(fs::TryLockError::WouldBlock)))

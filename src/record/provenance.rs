@@ -130,14 +130,14 @@ impl Origins {
         is_meant: impl Fn(&Provenance) -> bool,
         are_alike: impl Fn(&Provenance, &Provenance) -> bool,
     ) -> Vec<(&Provenance, usize)> {
-        let mut found: Vec<(&Provenance, usize)> = Vec::new();
+        let mut origins: Vec<(&Provenance, usize)> = Vec::new();
         for (origin, count) in self.counts.iter().filter(|(origin, _)| is_meant(origin)) {
-            match found.iter_mut().find(|(known, _)| are_alike(known, origin)) {
+            match origins.iter_mut().find(|(known, _)| are_alike(known, origin)) {
                 Some((_, all)) => *all += count,
-                None => found.push((origin, *count)),
+                None => origins.push((origin, *count)),
             }
         }
-        found
+        origins
     }
 
     /// The programs, in words with the number of their records, where there is more than one: their records
@@ -158,7 +158,10 @@ impl Origins {
     }
 
     fn difference(&self, (name, word): Property, main: &Provenance) -> Option<String> {
-        let others = self.counted(|one| word(one) != word(main), |one, other| word(one) == word(other));
+        let others = self.counted(
+            |provenance| word(provenance) != word(main),
+            |provenance, other| word(provenance) == word(other),
+        );
         let counted: Vec<String> =
             others.iter().map(|(other, count)| format!("`{}` in {count}", word(other))).collect();
         (!counted.is_empty()).then(|| format!("{name} {} instead of `{}`", counted.join(", "), word(main)))

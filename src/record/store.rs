@@ -155,14 +155,14 @@ impl RecordStore {
     /// Another build of the same sources gives the same values and is taken up, without its wall times, which are
     /// that build's own.
     pub fn found(&self, case: &Case) -> Found {
-        let own = Provenance::of_this_program();
+        let program = Provenance::of_this_program();
         let Some(mut record) = self.kept(case).filter(|record| !record.status.is_worth_another_run()) else {
             return Found::Nothing;
         };
-        if !record.provenance.is_of_one_program_with(&own) {
+        if !record.provenance.is_of_one_program_with(&program) {
             return Found::OfAnotherProgram;
         }
-        if !record.provenance.is_of_one_build_with(&own) {
+        if !record.provenance.is_of_one_build_with(&program) {
             record.wall.clear();
         }
         Found::Finished(Box::new(record))

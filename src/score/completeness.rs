@@ -166,7 +166,7 @@ impl Whole<'_> {
             }
         }
         let worst = off.into_iter().rev().max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
-        let of = if scene.is_some() { "that of the scene" } else { "the largest of all times" };
+        let of = if scene.is_some() { "that of the problem" } else { "the largest of all times" };
         Ok(worst.map(|(state, sum, share)| {
             let (when, [sum, whole]) = (self.when(state), [sum, whole].map(short));
             let wrong = if share < 0.0 { "are missing" } else { "are too many" };
@@ -218,7 +218,7 @@ impl Whole<'_> {
         let place = |end: &str, at: f64| format!("{end} ({axis} = {} m)", short(at));
         let bottom = place(base, 0.0);
         let top = place(surface, self.parameters.height);
-        let told = |state: &SampledState| {
+        let what_is_bare = |state: &SampledState| {
             let lines = coverage::lines(&state.initial_height, self.parameters.height);
             Some(match coverage::open_end(&lines, self.parameters.height, are_nodes)? {
                 End::Top => {
@@ -230,7 +230,7 @@ impl Whole<'_> {
                 End::Both => format!("no sample lies on {top} or on {bottom}: the nodes have no row there"),
             })
         };
-        self.first(states, Lack::HeightNotCovered, told)
+        self.first(states, Lack::HeightNotCovered, what_is_bare)
     }
 
     fn bare_height(&self, state: &SampledState) -> Option<String> {
@@ -448,7 +448,7 @@ mod tests {
         let nodes = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0];
         let with = |time: f64, sum: f64| SampledState { volume: vec![0.5 * sum; 2], ..at(time, &nodes, &[]) };
         // Of the scene, or of all times where volumes have another unit, and the farthest off of all.
-        let (scene, all) = ("that of the scene", "the largest of all times");
+        let (scene, all) = ("that of the problem", "the largest of all times");
         for (sums, place, of, said) in [
             ([1.0, 0.5, 0.75], "T_v = 0.2, the volumes add up to 0.5", scene, "1: 50.00 % are missing"),
             ([1.0, 1.0, 1.25], "T_v = 0.4, the volumes add up to 1.25", scene, "1: 25.00 % are too many"),

@@ -113,11 +113,11 @@ impl Scene<'_> {
             None => format!("run {} is right", place + 1),
             Some(told) => format!("in run {} {told}", place + 1),
         };
-        let told: Vec<String> = runs.iter().enumerate().map(of).collect();
+        let sentences: Vec<String> = runs.iter().enumerate().map(of).collect();
         let count = runs.len();
         format!(
             "there are {count} runs in one file, with other values at the same times: {}: was a second run appended?",
-            told.join("; ")
+            sentences.join("; ")
         )
     }
 
@@ -264,7 +264,7 @@ fn sentences_of(found: &Found, given: &Given<'_>) -> Vec<String> {
     let sentence = |(place, (reading, columns)): (usize, (&readings::Reading, Vec<&str>))| {
         let begin = match reading.factor {
             Some(factor) if is_alone && world.count == 0 => {
-                format!("is the load {} × that of the scene? Or ", fits::shown(factor))
+                format!("is the load {} × that of the problem? Or ", fits::shown(factor))
             }
             Some(_) if do_others_match && columns.len() == 1 => ONLY.to_owned(),
             _ => String::new(),

@@ -215,7 +215,8 @@ impl Score {
             let rows = field.rows(computed, exact, volumes, at_start);
             if rows.is_empty() {
                 let difference = FieldDifference::of(computed, exact, volumes);
-                let absolute = difference.and_then(|one| one.in_norm(Norm::L2).0).unwrap_or(f64::NAN);
+                let absolute =
+                    difference.and_then(|difference| difference.in_norm(Norm::L2).0).unwrap_or(f64::NAN);
                 self.unresolved.push(compared.unresolved(quantity, sample, absolute / scale));
             }
             self.errors.extend(rows);
@@ -228,7 +229,7 @@ impl Score {
                     .any(|known| known.name == Lack::ValueImpossible && known.sentence.starts_with(&begin));
                 let found = impossible_value(quantity, computed, exact, scale, time_factor);
                 let sentence = found.filter(|_| !is_known);
-                self.warnings.extend(sentence.map(|told| Finding::new(Lack::ValueImpossible, told)));
+                self.warnings.extend(sentence.map(|sentence| Finding::new(Lack::ValueImpossible, sentence)));
                 let cosine = cosine_of_error(computed, exact, volumes);
                 let half_a_digit = half_a_digit(computed);
                 self.leanings.push(Leaning { time_factor, quantity, cosine, half_a_digit });
@@ -372,7 +373,8 @@ pub(crate) mod tests {
     fn what_the_reference_does_not_resolve_is_listed_and_has_no_error() {
         let late = scored(&[state(20, 50.0, |_| 1e-13)]);
         assert!(late.errors.iter().all(|row| row.quantity != Quantity::Pressure), "{:?}", late.errors);
-        let pressure: Vec<_> = late.unresolved.iter().map(|one| (one.quantity, one.time_factor)).collect();
+        let pressure: Vec<_> =
+            late.unresolved.iter().map(|output| (output.quantity, output.time_factor)).collect();
         assert_eq!(pressure.len(), 1);
         assert_eq!(pressure[0].0, Quantity::Pressure);
         assert!((pressure[0].1 - 50.0).abs() < 1e-9);

@@ -112,16 +112,16 @@ impl<'a> Results<'a> {
                 run.states.retain(|_| wanted.next().unwrap_or(false));
             }
         }
-        if all.iter().all(|one| one.run.states.is_empty()) {
-            let missing = all.iter().find_map(|one| one.score.warnings.first());
+        if all.iter().all(|scored| scored.run.states.is_empty()) {
+            let missing = all.iter().find_map(|scored| scored.score.warnings.first());
             let sentence = missing.map_or("", |finding| finding.sentence.as_str());
             return Err(ScoreError::NoTime(sentence.to_owned()));
         }
         if is_requested {
             times = times_of(&all);
         }
-        for one in &mut all {
-            one.assess(comparison, parameters)?;
+        for scored in &mut all {
+            scored.assess(comparison, parameters)?;
         }
         let mut results = Self { all, order, times, comparison };
         results.compare_meshes(parameters);
@@ -148,7 +148,7 @@ impl<'a> Results<'a> {
 
     /// Doubts numbers of cells that are those of nodes, or of all cells; equal places on all meshes are a choice.
     fn doubt_cells(&mut self, height: f64) {
-        let counts = |one: &Scored| one.run.states.first().map(|state| state.initial_height.len());
+        let counts = |scored: &Scored| scored.run.states.first().map(|state| state.initial_height.len());
         let all: Vec<Option<usize>> = self.all.iter().map(counts).collect();
         if all.len() > 1 && all.iter().all(|count| *count == all[0]) {
             return;
@@ -156,17 +156,18 @@ impl<'a> Results<'a> {
         for Scored { run, score } in &mut self.all {
             let Some((cells, state)) = run.cells.zip(run.states.first()) else { continue };
             let doubt = counted_otherwise(cells, &state.initial_height, height);
-            score.warnings.extend(doubt.map(|told| Finding::new(Lack::CellsDoubtful, told)));
+            score.warnings.extend(doubt.map(|sentence| Finding::new(Lack::CellsDoubtful, sentence)));
         }
     }
 
     /// Finds meshes with the numbers of a coarser one, unless both are exact.
     fn find_identical(&mut self) {
         for rank in 1..self.order.len() {
-            let own = &self.all[self.order[rank]];
-            let is_exact = own.score.errors.iter().all(|row| row.value.abs() < SINGLE_PRECISION);
+            let finest = &self.all[self.order[rank]];
+            let is_exact = finest.score.errors.iter().all(|row| row.value.abs() < SINGLE_PRECISION);
             let has_same = |place: &&usize| {
-                self.all[**place].run.states == own.run.states && self.all[**place].run.cells != own.run.cells
+                self.all[**place].run.states == finest.run.states
+                    && self.all[**place].run.cells != finest.run.cells
             };
             if let Some(place) = self.order[..rank].iter().find(has_same).filter(|_| !is_exact) {
                 let sentence = format!(
@@ -188,7 +189,7 @@ impl<'a> Results<'a> {
 
     /// The scores.
     pub fn scores(&self) -> Vec<&Score> {
-        self.all.iter().map(|one| &one.score).collect()
+        self.all.iter().map(|scored| &scored.score).collect()
     }
 
     /// The series of a result's error and the result's cells. Meshes have times of their own, so the error is found by
@@ -200,9 +201,9 @@ impl<'a> Results<'a> {
         series: &'b [ScoredSeries],
     ) -> Option<(usize, &'b ScoredSeries)> {
         let rank = self.order.iter().position(|place| *place == result)?;
-        let one = &self.all[result];
+        let scored = &self.all[result];
         let time =
-            one.score.samples.iter().position(|(time, _)| time.to_bits() == row.time_factor.to_bits())?;
+            scored.score.samples.iter().position(|(time, _)| time.to_bits() == row.time_factor.to_bits())?;
         let group = self.times.groups[rank][time]?;
         let is_own = |series: &&ScoredSeries| {
             let of = &series.measure;
@@ -210,13 +211,13 @@ impl<'a> Results<'a> {
                 && (of.quantity, of.sample, of.norm) == (row.quantity, row.sample, row.norm)
                 && of.reference == row.reference
         };
-        Some((one.run.cells?, series.iter().find(is_own)?))
+        Some((scored.run.cells?, series.iter().find(is_own)?))
     }
 
     /// Adds the series to every score, for programs that read them.
     pub fn keep_series(&mut self, series: &[ScoredSeries], cells: &[usize]) {
-        for one in &mut self.all {
-            one.score.series = series.iter().map(|series| series.row(cells)).collect();
+        for scored in &mut self.all {
+            scored.score.series = series.iter().map(|series| series.row(cells)).collect();
         }
     }
 
@@ -254,7 +255,7 @@ impl Scored {
         self.score = score(parameters, held.references, states, held.mapping.sample)?;
         let is_judged = |quantity: &Quantity| !self.run.without.contains(quantity);
         self.score.errors.retain(|row| is_judged(&row.quantity));
-        self.score.unresolved.retain(|one| is_judged(&one.quantity));
+        self.score.unresolved.retain(|output| is_judged(&output.quantity));
         self.score.warnings.splice(0..0, missing);
         self.score.warnings.extend(self.missing(parameters, held.mapping));
         self.score.warnings.extend(held.mapping.taken_for_granted(held.case.scene.body.is_plane()).map(|taken| Finding {
@@ -264,11 +265,11 @@ impl Scored {
                  is guessed from its numbers"
             ),
         }));
-        if let Some(own) = held.references.first() {
+        if let Some(reference) = held.references.first() {
             let column = &held.case.column;
             let of_scene = match held.mapping.whole_volume {
                 Some(volume) => vec![volume],
-                None if matches!(own, ReferenceKind::Shelf(_)) => Vec::new(),
+                None if matches!(reference, ReferenceKind::Shelf(_)) => Vec::new(),
                 None if held.case.scene.body.is_plane() => vec![column.volume(held.case.cells)],
                 None => {
                     let widths = [Some(1.0), Some(column.extent()), self.run.width];
@@ -277,7 +278,7 @@ impl Scored {
             };
             let whole = Whole {
                 parameters,
-                reference: *own,
+                reference: *reference,
                 volumes: &of_scene,
                 is_declared: held.mapping.whole_volume.is_some(),
                 has_volumes: held.mapping.columns.volume.is_some(),
@@ -295,7 +296,7 @@ impl Scored {
             self.run.notes.extend(whole.profiles(states));
             let are_nodes = held.mapping.sample == Sample::Nodes;
             self.score.not_judged.extend(whole.end_without_sample(states, are_nodes));
-            self.score.diagnosis = diagnosis(parameters, *own, states, held.mapping)?;
+            self.score.diagnosis = diagnosis(parameters, *reference, states, held.mapping)?;
         }
         self.note_absences(held.case);
         Ok(())
@@ -306,9 +307,12 @@ impl Scored {
         let when =
             |place: usize| format!("T_v = {}", short(parameters.time_factor(self.run.states[place].time)));
         let absent = self.run.expected.absent(&self.run.states).into_iter();
-        let shown = |one: Absent| Absent { column: one.column.map(|column| mapping.shown(column)), ..one };
-        let absent =
-            absent.map(|one| Finding { name: Lack::QuantityMissing, sentence: shown(one).sentence(when) });
+        let shown = |lacking: Absent| Absent {
+            column: lacking.column.map(|column| mapping.shown(column)),
+            ..lacking
+        };
+        let absent = absent
+            .map(|lacking| Finding { name: Lack::QuantityMissing, sentence: shown(lacking).sentence(when) });
         let unended =
             self.run.unended.iter().map(|file| Finding { name: Lack::EndMissing, sentence: not_ended(file) });
         let said_twice: Vec<&String> = self.run.contradictions.iter().chain(&self.run.doubts).collect();
@@ -328,7 +332,7 @@ impl Scored {
         let [displacement, settlement] = [Quantity::Displacement, Quantity::Settlement].map(has);
         // It was compared with nothing, or is left out on purpose.
         let is_known = self.run.without.contains(&Quantity::Settlement)
-            || self.score.unresolved.iter().any(|one| one.quantity == Quantity::Settlement);
+            || self.score.unresolved.iter().any(|output| output.quantity == Quantity::Settlement);
         let is_plane = case.scene.body.is_plane();
         let is_curve = self.run.states.iter().all(|state| state.initial_height.is_empty());
         if displacement && !settlement && !is_known && !is_curve {

@@ -141,7 +141,8 @@ fn largest_digit(rows: &[Option<&ErrorRow>], levels: &[(usize, &Score)]) -> f64 
         let row = row?;
         let quantity =
             if row.quantity == Quantity::Settlement { Quantity::Displacement } else { row.quantity };
-        let like = |one: &&Leaning| (one.time_factor, one.quantity) == (row.time_factor, quantity);
+        let like =
+            |leaning: &&Leaning| (leaning.time_factor, leaning.quantity) == (row.time_factor, quantity);
         score.leanings.iter().find(like).map(|leaning| leaning.half_a_digit)
     };
     rows.iter().copied().zip(levels).filter_map(digit).fold(0.0, f64::max)
@@ -152,7 +153,8 @@ fn signed_by_leaning(rows: &[Option<&ErrorRow>], levels: &[(usize, &Score)]) -> 
     let signed = |(row, (_, score)): (Option<&ErrorRow>, &(usize, &Score))| {
         let row = row?;
         let is_own = score.errors.first().is_some_and(|own| own.reference == row.reference);
-        let like = |one: &&Leaning| (one.time_factor, one.quantity) == (row.time_factor, row.quantity);
+        let like =
+            |leaning: &&Leaning| (leaning.time_factor, leaning.quantity) == (row.time_factor, row.quantity);
         let leaning = score.leanings.iter().find(like).filter(|_| is_own)?;
         (leaning.cosine.abs() >= CLEAR).then_some(row.value.abs() * leaning.cosine.signum())
     };

@@ -100,9 +100,10 @@ impl Measure {
 
     /// Why a record has no error to judge at this output, where its reference is too inaccurate there.
     pub fn unjudged(&self, record: &Record) -> Option<String> {
-        let is_this =
-            |one: &PoorOutput| one.reference == self.reference && one.time_factor == self.time_factor;
-        unjudged_outputs(record).iter().find(|one| is_this(one)).map(PoorOutput::sentence)
+        let is_this = |output: &PoorOutput| {
+            output.reference == self.reference && output.time_factor == self.time_factor
+        };
+        unjudged_outputs(record).iter().find(|output| is_this(output)).map(PoorOutput::sentence)
     }
 
     /// Where a record has this error instead, with what to write; none where that is not the reason why it is missing.

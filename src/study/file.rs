@@ -16,6 +16,9 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use toml::de::Deserializer;
 
+/// Name of the study that a command line describes.
+pub const COMMAND_LINE: &str = "command line";
+
 /// A study file.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -63,7 +66,7 @@ pub struct StudyFile {
     /// Results that external solvers have left already, whose names stand among the methods too.
     #[serde(default)]
     pub result: Vec<ResultTable>,
-    /// Blocks of cases: the product of the lists, or a path.
+    /// Blocks of cases: the product of the lists, or zipped lists.
     #[serde(default)]
     pub sweep: Vec<Placed<SweepTable>>,
     /// What must be found; judged by `check`.
@@ -95,7 +98,7 @@ impl StudyFile {
                 ["sweep", "expect", "expect_case"].map(|table| take(table, "sweep"));
             let mut file = Self::deserialize(Deserializer::from(root))?;
             let [column, points, material, integrator, layer, manufactured] =
-                single.map(|inputs| inputs.map(|one| one.into_iter().next().unwrap_or_default()));
+                single.map(|inputs| inputs.map(|tables| tables.into_iter().next().unwrap_or_default()));
             file.column.inputs = column?;
             file.points.inputs = points?;
             file.material.inputs = material?;
@@ -229,7 +232,7 @@ pub struct SweepTable {
     #[serde(default)]
     #[schemars(schema_with = "axes")]
     pub path: Typed<Vec<Placed<String>>>,
-    /// Smallest tier that includes it.
+    /// Lowest test level that includes it.
     #[serde(default)]
     pub tier: Tier,
 }
@@ -268,7 +271,7 @@ pub struct ExpectTable {
     pub spread: Typed<LevelTable>,
     /// Class of the series.
     pub class: Option<Class>,
-    /// Bounds on the floor under the errors.
+    /// Bounds on the error plateau.
     pub floor: Typed<RangeTable>,
     /// Bound on the oscillation of the profile.
     pub oscillation: Typed<BelowTable>,
@@ -278,7 +281,7 @@ pub struct ExpectTable {
     pub probe: Typed<f64>,
     /// Known failure: the expectation must fail.
     pub xfail: Typed<XfailTable>,
-    /// Smallest tier that includes it.
+    /// Lowest test level that includes it.
     #[serde(default)]
     pub tier: Tier,
 }
@@ -330,7 +333,7 @@ pub struct ExpectCaseTable {
     #[serde(default)]
     #[schemars(schema_with = "reference")]
     pub reference: Typed<String>,
-    /// Smallest tier that includes it.
+    /// Lowest test level that includes it.
     #[serde(default)]
     pub tier: Tier,
 }
@@ -471,7 +474,7 @@ pub struct ResultTable {
     /// Seconds from one numbered step to the next, where file names have the number of the step.
     #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
     pub time_step: Typed<f64>,
-    /// Smallest tier that includes it.
+    /// Lowest test level that includes it.
     #[serde(default)]
     pub tier: Tier,
 }

@@ -94,7 +94,7 @@ fn typed(kind: Kind, value: Spanned<DeValue<'_>>, is_list: bool) -> Result<One, 
     let input = match (value.get_ref(), kind) {
         (DeValue::Array(_), _) if is_list => {
             let DeValue::Array(list) = value.into_inner() else { return Err(refused("a list")) };
-            let values = list.into_iter().map(|one| typed(kind, one, false));
+            let values = list.into_iter().map(|item| typed(kind, item, false));
             return Ok(Placed::new(place, TypedInput::List(values.collect::<Result<_, Error>>()?)));
         }
         _ if is_list => return Err(refused("a list is expected")),
@@ -125,12 +125,12 @@ fn reader(value: Spanned<DeValue<'_>>) -> ValueDeserializer<'_> {
 pub fn add_inputs(schema: &mut Schema, of: &str, are_lists: bool) {
     let settings = SchemaSettings::draft2020_12().for_deserialize();
     let mut generator = settings.with(|settings| settings.inline_subschemas = true).into_generator();
-    let own = schema.ensure_object().entry("properties").or_insert(serde_json::json!({}));
+    let properties = schema.ensure_object().entry("properties").or_insert(serde_json::json!({}));
     for key in Key::in_table(of) {
         let value = schema_of_values(key, &mut generator);
-        let mut one = if are_lists { json_schema!({ "type": "array", "items": value }) } else { value };
-        one.insert("description".to_owned(), key.description().into());
-        own[key.name] = one.into();
+        let mut schema = if are_lists { json_schema!({ "type": "array", "items": value }) } else { value };
+        schema.insert("description".to_owned(), key.description().into());
+        properties[key.name] = schema.into();
     }
 }
 
@@ -175,14 +175,14 @@ fn schema_of_values(key: &Key, generator: &mut SchemaGenerator) -> Schema {
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimeStepTable {
-    /// Share of the predicted critical step.
+    /// Safety factor: the step over the predicted critical step.
     pub stable: Typed<f64>,
-    /// Share of a cell that the fastest wave crosses in a step.
+    /// Courant number of the fastest wave.
     pub courant: Typed<f64>,
     /// Step, s.
     #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
     pub seconds: Typed<f64>,
-    /// Step over the time that has passed.
+    /// The step over the elapsed time.
     pub growth: Typed<f64>,
     /// Bound on the estimated error in time, relative to the load and to the settlement it makes.
     pub tolerance: Typed<f64>,

@@ -3,6 +3,8 @@
 
 use crate::case::{Case, Key};
 use crate::study::diagnostic::StudyError;
+use crate::study::file::COMMAND_LINE;
+use crate::study::synonyms::read_as;
 use crate::study::units::{has_unit, in_si};
 use crate::study::{Purpose, Study, StudySource};
 use oedometer_exact::{AddedKey, ColumnParameters, ReferenceKind, ShelfParameters, ShelfProblem};
@@ -104,7 +106,7 @@ fn number_of(added: &AddedKey, key: &str, value: &str) -> Result<f64, OverrideEr
             .map_err(|_| OverrideError::typed(format!("`{key}` must be a number, got {value}")));
     }
     let typed = value.trim_matches(['"', '\'']);
-    typed.parse().or_else(|_| in_si(typed, added.unit)).map_err(|told| refused_quantity(key, told))
+    typed.parse().or_else(|_| in_si(typed, added.unit)).map_err(|problem| refused_quantity(key, problem))
 }
 
 /// Why a solution does not read a key.
@@ -161,7 +163,8 @@ fn assignment(typed: &str) -> Result<(String, String), OverrideError> {
             "`--set {typed}` has no value: write KEY=VALUE, like material.porosity=0.45"
         )));
     };
-    let (key, value) = (key.trim(), value.trim());
+    let key = key.trim().split('.').map(read_as).collect::<Vec<_>>().join(".");
+    let value = value.trim();
     if value.contains(['\n', '\r']) {
         return Err(OverrideError::typed(format!("the value of `{key}` has more than one line")));
     }
@@ -172,7 +175,7 @@ fn assignment(typed: &str) -> Result<(String, String), OverrideError> {
         )));
     }
     let is_toml = !value.is_empty() && toml::from_str::<toml::Table>(&format!("{key} = {value}")).is_ok();
-    Ok((key.to_owned(), if is_toml { value.to_owned() } else { toml_of(value) }))
+    Ok((key, if is_toml { value.to_owned() } else { toml_of(value) }))
 }
 
 /// The text of a study from options and `--set`, each key given once.
@@ -184,7 +187,7 @@ pub struct StudyLines {
 }
 
 impl StudyLines {
-    /// The lines of a command about a scene, whose name `by` gave.
+    /// The lines of a command about a problem, whose name `by` gave.
     pub fn of(command: &str, scene: &str, by: &str) -> Result<Self, OverrideError> {
         let mut lines = Self::default();
         lines.give("title", &toml_of(command), &format!("`{command}`"))?;
@@ -251,7 +254,7 @@ impl StudyLines {
         self.lines.push("[[sweep]]".to_owned());
         self.lines.extend(sweep);
         let text = self.lines.join("\n") + "\n";
-        Ok(Study::check_for(&StudySource { name: "command line".to_owned(), text }, purpose)?)
+        Ok(Study::check_for(&StudySource { name: COMMAND_LINE.to_owned(), text }, purpose)?)
     }
 
     /// Checks the study of one case that is not solved: no grid of this program has to fit its body.
@@ -296,10 +299,10 @@ pub fn step_rule(typed: &str) -> Result<String, OverrideError> {
 /// Numbers of a comma-separated list.
 pub fn numbers(name: &str, typed: &str) -> Result<Vec<f64>, OverrideError> {
     let number = |entry: &str| {
-        let told = || format!("`{entry}` in `{name} {typed}` is not a number");
+        let refusal = || format!("`{entry}` in `{name} {typed}` is not a number");
         entry.parse().map_err(|_| match in_si(entry, "s") {
-            Ok(_) if name == "--time-factor" => format!("{}; a time is given by `--time {entry}`", told()),
-            _ => told(),
+            Ok(_) if name == "--time-factor" => format!("{}; a time is given by `--time {entry}`", refusal()),
+            _ => refusal(),
         })
     };
     entries(name, typed)?.into_iter().map(|entry| number(entry).map_err(OverrideError::Typed)).collect()
@@ -327,7 +330,7 @@ pub fn times(name: &str, typed: &str) -> Result<Vec<f64>, OverrideError> {
     }
     let time = |entry: &str| {
         let parsed = entry.parse().or_else(|_| in_si(entry, "s"));
-        parsed.map_err(|told| refused_quantity(&format!("{name} {typed}"), told))
+        parsed.map_err(|problem| refused_quantity(&format!("{name} {typed}"), problem))
     };
     entries(name, typed)?.into_iter().map(time).collect()
 }
@@ -369,6 +372,7 @@ impl Asked {
     /// # Errors
     /// What is wrong with the scene or an assignment.
     pub fn of_scene(scene: &str, outputs: &Outputs) -> Result<Self, OverrideError> {
+        let scene = read_as(scene);
         let kind = scene.parse::<ReferenceKind>().ok();
         let on_shelf = kind.filter(|kind| is_on_shelf(*kind));
         let mut outputs = outputs.clone();
@@ -390,10 +394,10 @@ impl Asked {
         let is_requested = lines.has("output.time_factors") || lines.has("output.times");
         let study = lines.theory_study()?;
         let case = &study.planned[0].case;
-        let own = study.references.iter().map(|kind| kind.for_soil(&case.material)).collect();
+        let references = study.references.iter().map(|kind| kind.for_soil(&case.material)).collect();
         Ok(Self {
             parameters: ColumnParameters { shelf, ..column_parameters(&case.column, &case.material) },
-            references: on_shelf.map_or(own, |kind| vec![kind]),
+            references: on_shelf.map_or(references, |kind| vec![kind]),
             requested: if is_requested { case.time_factors.to_vec() } else { Vec::new() },
             study,
         })

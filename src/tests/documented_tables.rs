@@ -77,8 +77,8 @@ fn inputs(table: &str) -> String {
         let left_out = match key.name {
             "method" | "cells" => "required".to_owned(),
             "time_step" => "the integrator's own".to_owned(),
-            "formulation" => "the integrator's and scene's own".to_owned(),
-            "law" => "the scene's own".to_owned(),
+            "formulation" => "the integrator's and problem's own".to_owned(),
+            "law" => "the problem's own".to_owned(),
             "length" | "base" if table == "sweep" => "the layer's".to_owned(),
             "amplitude_x" | "amplitude_y" | "amplitude" | "frequency" | "pressure" => match (table, key.name)
             {

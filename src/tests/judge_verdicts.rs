@@ -41,7 +41,7 @@ fn only_the_expected_class_passes() {
     for error in failing {
         let found = verdict(&second_order(), &series(error));
         assert!(!found.pass && found.outcome == VerdictOutcome::Failed, "{found:?}");
-        assert!(found.reason.contains("instead of asymptotic"), "{}", found.reason);
+        assert!(found.reason.contains(", expected asymptotic"), "{}", found.reason);
         for class in Class::ALL {
             let expectation = SeriesDemand { class: Some(class), ..SeriesDemand::default() };
             let context = Context { formal_order: Some(2.0), ..Context::default() };
@@ -310,9 +310,9 @@ fn a_verdict_says_what_was_asked_and_what_was_found() {
     }
     let bent = judge(&order(2.0), &series(|h| h * h + 0.05 * h), &context, &Beside::default());
     let name = bent.classification.class;
-    let none = format!("no order to compare with 1.90 … 2.25: the series is {name}");
+    let none = "no order to compare with 1.90 … 2.25";
     assert!(!bent.pass && bent.reason.ends_with(&format!("; {none}")), "{}", bent.reason);
-    let wrong = format!("{name} instead of asymptotic: {}", bent.classification.reason);
+    let wrong = format!("{name}, expected asymptotic: {}", bent.classification.reason);
     assert!(bent.reason.starts_with(&wrong), "{}", bent.reason);
     // Errors that are there are shown beside one that is not.
     let mut levels = series(|h| h * h).levels().to_vec();
@@ -338,7 +338,7 @@ fn a_floor_an_oscillation_and_an_uncertainty_are_told_with_their_bounds() {
         (check.pass, check.reason)
     };
     let model = series(|h| h * h + 1.4e-4);
-    let height = "floor 1.4e-4";
+    let height = "error plateau 1.4e-4";
     for (above, below, pass, said) in [
         (1.2e-4, 1.6e-4, true, "in 1.2e-4 … 1.6e-4"),
         (1.6e-4, 2e-4, false, "outside 1.6e-4 … 2e-4"),
@@ -350,10 +350,10 @@ fn a_floor_an_oscillation_and_an_uncertainty_are_told_with_their_bounds() {
     }
     let levels = series(|h| h * h).levels().to_vec();
     let three = ErrorSeries::new(levels[..3].to_vec());
-    let few = "no floor to judge: 3 levels cannot tell one from none, add a level";
+    let few = "no error plateau to judge: 3 levels cannot tell one from none; add a level";
     assert_eq!(last(&floor(0.0, 1.0), &three, &Beside::default()), (false, few.to_owned()));
     let grows = last(&floor(0.0, 1.0), &series(|h| 1.0 / h), &Beside::default());
-    assert_eq!(grows, (false, "no floor to judge: the series is divergent".to_owned()));
+    assert_eq!(grows, (false, "no error plateau to judge: the series is divergent".to_owned()));
 
     let calm = SeriesDemand { oscillation_below: Some(0.05), ..SeriesDemand::default() };
     for (oscillation, pass, said) in [

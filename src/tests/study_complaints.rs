@@ -31,7 +31,7 @@ const IMPLICIT: &str = "integrator = ['implicit']\ncells = [4, 8, 16]";
 /// Scene, tables, sweep and expectation of a study, with ⏎ for the end of a line; what is wrong, and what helps.
 const COMPLAINTS: &str = r#"
 xie-leo ¦ output.references = ['xie-leo']⏎column.loading_time = 5.0 ¦ cells = [4] ¦  ¦ the load of `xie-leo` acts at once, and this column's grows ¦ compare it with "large-strain"
-at-rest ¦ column.strain = 0.1 ¦ cells = [4] ¦  ¦ no load acts in the scene `at-rest`: it cannot strain it ¦ leave `strain` out
+at-rest ¦ column.strain = 0.1 ¦ cells = [4] ¦  ¦ no load acts in the problem `at-rest`: it cannot strain it ¦ leave `strain` out
 terzaghi ¦ column.strain = 0.1 ¦ cells = [4]⏎load = [1.0, 2.0] ¦  ¦ the column has a `load` and a `strain` ¦ leave one of them out: the load follows from the strain
 mandel ¦ column.dimensions = 1 ¦ cells = [10] ¦  ¦ `mandel` has two dimensions ¦ leave the key out: the plate presses across the direction in which the water flows
 layered ¦ column = { height = 2.5, soils = [{ thickness = 3.0 }, { thickness = 1.5 }] } ¦ cells = [4] ¦  ¦ the layers are 4.5 m thick together, and the column is 2.5 m high: they must fill it ¦ make the column 4.5 m high, or the layers thinner
@@ -43,7 +43,7 @@ terzaghi ¦  ¦ cells = [4, 8]⏎height = [1.0, 2.0] ¦ at = { cells = 8, below 
 terzaghi ¦  ¦ cells = [4, 8]⏎[[sweep]]⏎method = ['MPM']⏎integrator = ['implicit']⏎cells = [4, 8]⏎porosity = [0.4] ¦ method = 'GIMP'⏎porosity = 0.4⏎at = { cells = 8, below = 0.5 } ¦ no case of the study has `porosity = 0.4` and the other inputs of the expectation ¦ the cases have 0.3
 terzaghi ¦  ¦ cells = [4]⏎time_step = [{ seconds = 1.0 }, { seconds = 0.5 }] ¦ axis = 'time_step'⏎class = 'asymptotic'⏎at = { cells = 4, below = 0.5 } ¦ the bound names no level of its axis, or no bound ¦ write it like { cells = 10, below = 5.0e-3 }
 terzaghi ¦  ¦ cells = [4, 8] ¦ quantity = 'settlement'⏎norm = 'l2'⏎at = { cells = 8, below = 0.5 } ¦ a settlement has no `norm = "l2"` ¦ it is measured at the "surface", "relative" to the exact one: leave the key out
-footing ¦  ¦ cells = [4, 8] ¦ quantity = 'load_factor'⏎sample = 'nodes'⏎at = { cells = 8, below = 0.5 } ¦ a load factor has no `sample = "nodes"` ¦ it is measured at the "surface", "relative" to the exact one: leave the key out
+footing ¦  ¦ cells = [4, 8] ¦ quantity = 'load_factor'⏎sample = 'nodes'⏎at = { cells = 8, below = 0.5 } ¦ a bearing-capacity factor has no `sample = "nodes"` ¦ it is measured at the "surface", "relative" to the exact one: leave the key out
 "#;
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::cli::commands::schema::{Document, schema_of};
 use crate::study::check::Study;
 use crate::study::file::StudySource;
-use oedometer_foreign::synonyms::KEY_NAMES;
+use oedometer_foreign::synonyms::{FIELD_TERMS, KEY_NAMES, read_as};
 
 const SOUND: &str = "title = \"t\"\nscene = \"terzaghi\"\n[material]\nporosity = 0.3\n\
                      [[sweep]]\nmethod = [\"GIMP\"]\ncells = [4, 8]\n";
@@ -167,6 +167,59 @@ fn a_word_of_another_program_is_answered_with_the_word() {
         let told = refusal(&SOUND.replacen(from, to, 1));
         assert!(told.contains(&format!("did you mean `{word}`?")), "{told}");
     }
+}
+
+/// Keys and words of a study, in which each term of the field has its place.
+const IN_OUR_WORDS: &str = r#"
+title = "t"
+scene = "single-mode"
+integrator = { mapping_back = false }
+[[sweep]]
+method = ["GIMP"]
+cells = [4, 8, 16]
+path = ["cells", "time_step"]
+tier = "full"
+time_step = [{ stable = 0.5 }, { stable = 0.4 }, { stable = 0.3 }]
+[[sweep]]
+method = ["MPM"]
+integrator = ["implicit"]
+cells = [5, 10, 20]
+time_step = [{ growth = 0.5 }]
+[[expect]]
+method = "MPM"
+quantity = "pressure"
+time_factor = 0.1
+floor = { below = 1e-2 }
+"#;
+
+#[test]
+fn terms_of_the_field_are_read_as_the_keys_and_words_they_stand_for() {
+    let read = |text: &str| {
+        let source = StudySource { name: "t.toml".to_owned(), text: text.to_owned() };
+        let study = Study::check(&source).unwrap_or_else(|error| panic!("{error}"));
+        let cases: Vec<_> = study.planned.iter().map(|one| (one.case.hash(), one.tier)).collect();
+        (cases, format!("{:?}", study.expectations))
+    };
+    let as_before = read(IN_OUR_WORDS);
+    let mut all = IN_OUR_WORDS.to_owned();
+    let mut replaced = 0;
+    for (term, word) in FIELD_TERMS {
+        assert_eq!(read_as(term), word);
+        let places = [format!("\n{word} = "), format!("{{ {word} = "), format!("\"{word}\"")];
+        for place in places.iter().filter(|place| IN_OUR_WORDS.contains(*place)) {
+            replaced += 1;
+            let text = IN_OUR_WORDS.replace(place, &place.replace(word, term));
+            assert_eq!(read(&text), as_before, "{term}");
+            all = all.replace(place, &place.replace(word, term));
+        }
+    }
+    assert_eq!((replaced, read(&all)), (8, as_before));
+    let twice = IN_OUR_WORDS.replace("tier = ", "test_level = \"ci\"\ntier = ");
+    assert!(
+        refusal(&twice).contains("it is another name of `tier`: leave one of them out"),
+        "{}",
+        refusal(&twice)
+    );
 }
 
 #[test]

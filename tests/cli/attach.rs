@@ -252,7 +252,7 @@ fn a_new_adapter_runs_as_it_is_and_is_of_second_order() {
         assert!(told.out.contains("2 of 2 expectations met"), "{language}: {}{}", told.out, told.err);
         assert!(!folder.path().join("out").exists(), "a check keeps nothing");
         let again = call(folder.path(), &["new", "solver", "mine", "--language", language]);
-        assert!(again.code == 2 && again.err.contains("exists already"), "{}", again.err);
+        assert!(again.code == 2 && again.err.contains("already exists"), "{}", again.err);
     }
     let folder = TempDir::new().expect("a folder");
     assert_eq!(call(folder.path(), &["new", "solver", "gimp", "--language", "shell"]).code, 0);

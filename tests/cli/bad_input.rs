@@ -243,7 +243,7 @@ fn names_that_are_none_are_refused_with_the_names_there_are() {
 #[test]
 fn a_path_whose_axes_differ_in_length_is_refused() {
     let told = refused_with("cells = [2]", "cells = [2, 4, 8]\npath = [\"cells\", \"time_step\"]");
-    assert_says(&told, &["combines `time_step` with 1 values", "equal lengths"]);
+    assert_says(&told, &["`time_step` has 1 values", "equal lengths"]);
 }
 
 #[test]
@@ -300,7 +300,7 @@ fn shards_and_numbers_of_jobs_that_are_none_are_refused() {
     std::fs::write(folder.path().join("study.toml"), SOUND).expect("a file");
     for shard in ["3/2", "0/2", "1/0", "1", "a/b", "1/2/3", "-1/2", ""] {
         let told = refused_in(folder.path(), &["run", "study.toml", &format!("--shard={shard}")]);
-        assert_says(&told, &["is not a share", "like 2/3"]);
+        assert_says(&told, &["is not a shard", "like 2/3"]);
     }
     for option in ["--jobs=0", "--jobs=-1", "--jobs=many", "--tier=big"] {
         refused_in(folder.path(), &["run", "study.toml", option]);
@@ -366,7 +366,7 @@ fn impossible_arguments_of_solve_are_refused() {
 #[test]
 fn impossible_arguments_of_exact_are_refused() {
     for (arguments, parts) in [
-        (&["tezaghi"][..], ["no exact solution is called `tezaghi`", "terzaghi-incompressible"]),
+        (&["tezaghi"][..], ["there is no exact solution `tezaghi`", "terzaghi-incompressible"]),
         (&["terzaghi", "--zeta", "1.5"], ["relative depth must lie between 0", "got 1.5"]),
         (&["terzaghi", "--zeta", "nan"], ["relative depth must lie between 0", "got NaN"]),
         (&["terzaghi", "--zeta", "deep"], ["`deep` in", "is not a number"]),

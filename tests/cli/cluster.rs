@@ -148,7 +148,7 @@ fn what_is_under_way_is_followed_and_not_submitted_beside_it() {
     let left = "not followed; run the command without `--detach` to follow it".to_owned();
     assert_eq!(cluster.said(&["--detach"]), (0, vec![submitted(101), left.clone()]));
     assert_eq!(cluster.file("out/slurm/job").as_deref(), Some("101\n102\n"));
-    let there = "job 101 is already submitted, and is followed".to_owned();
+    let there = "job 101 is already submitted; following it".to_owned();
     busy();
     assert_eq!(cluster.said(&["--detach"]), (0, vec![there.clone(), left]));
     assert_eq!(cluster.asked().len(), 2);
@@ -162,11 +162,11 @@ fn a_cluster_that_takes_no_array_or_is_none_is_told() {
     for (size, end) in [
         (
             0,
-            "error: this Slurm takes no arrays (MaxArraySize=0): `oedometer plan --tasks` writes a job list\n",
+            "error: this Slurm accepts no arrays (MaxArraySize=0): `oedometer plan --tasks` writes a job list\n",
         ),
         (
             1,
-            "error: this Slurm takes no arrays (MaxArraySize=1): `oedometer plan --tasks` writes a job list\n",
+            "error: this Slurm accepts no arrays (MaxArraySize=1): `oedometer plan --tasks` writes a job list\n",
         ),
     ] {
         let told = Cluster::new(size, "COMPLETED", NOTHING).run(&["--detach"]);
@@ -175,10 +175,10 @@ fn a_cluster_that_takes_no_array_or_is_none_is_told() {
     let none = Cluster { path: "/nowhere".to_owned(), ..Cluster::new(4, "COMPLETED", NOTHING) };
     let told = none.run(&["--detach"]);
     let end =
-        "error: cannot start sbatch: No such file or directory; is this a machine of a Slurm cluster?\n";
+        "error: cannot start sbatch: No such file or directory; is this machine part of a Slurm cluster?\n";
     assert!(told.code == 2 && told.err.ends_with(end), "{}: {}", told.code, told.err);
     let told = none.run(&["--tier", "smoke"]);
-    assert_eq!((told.code, told.err.as_str()), (4, "error: no case belongs to this tier\n"));
+    assert_eq!((told.code, told.err.as_str()), (4, "error: no case is in this test level\n"));
 }
 
 #[test]
@@ -199,8 +199,8 @@ fn the_scripts_have_every_option_that_was_given() {
 #SBATCH --requeue
 #SBATCH --signal=B:TERM@60
 #SBATCH --time=1:30:00
-# One share of 3. It takes up what is finished: killed, requeued or submitted again it goes on, and
-# told to end by SIGTERM it finishes or drops the cases at work and leaves the rest.
+# One shard of 3. It reuses finished cases, so it continues after a kill, a requeue or another submission.
+# On SIGTERM it finishes or drops running cases and starts no others.
 exec oedometer run out/slurm/short.toml --out out --tier ci --shard $SLURM_ARRAY_TASK_ID/3 --balance --resume --jobs "${SLURM_CPUS_PER_TASK:-1}"
 
 # out/slurm/merge.sh

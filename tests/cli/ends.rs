@@ -23,7 +23,7 @@ fn place() -> TempDir {
 const ENDS: &str = "
 plan short.toml --missing none | 2 | there is no folder of results none
 merge short.toml empty none | 2 | there is no folder of results none
-merge empty | 4 | the folders have no results of a study of this project or of a shipped one
+merge empty | 4 | the folders have no results of a study of this project or of a built-in one
 records empty | 4 | empty has no such record
 records none | 2 | there is no folder of a study's results none
 exact mandel --zeta 0.5 | 2 | the fields of `mandel` depend on the distance from the middle: give it by `--x`
@@ -31,17 +31,17 @@ exact single-mode --degree 0.5 | 2 | `single-mode` has no time factor for a degr
 score a.csv --scene terzaghi --time-tolerance 1 | 2 | `--time-tolerance 1` is invalid: expected a number from 0 to below 1
 score a.csv --scene terzaghi --time-tolerance -0.1 | 2 | `--time-tolerance -0.1` is invalid: expected a number from 0 to below 1
 score a.csv --scene terzaghi --mapping map.toml --set-time-step 0 | 2 | `--set-time-step 0` is invalid: give seconds above 0
-run short.toml --shard 0/2 | 2 | `--shard 0/2` is not a share: write i/n with 1 ≤ i ≤ n, like 2/3
-run short.toml --shard 1/0 | 2 | `--shard 1/0` is not a share: write i/n with 1 ≤ i ≤ n, like 2/3
-run short.toml --shard 2 | 2 | `--shard 2` is not a share: write i/n with 1 ≤ i ≤ n, like 2/3
-new solver short.toml --scene mandel | 2 | `--scene` belongs to `oedometer new NAME`: the adapter of a solver is for `terzaghi`
+run short.toml --shard 0/2 | 2 | `--shard 0/2` is not a shard: write i/n with 1 ≤ i ≤ n, like 2/3
+run short.toml --shard 1/0 | 2 | `--shard 1/0` is not a shard: write i/n with 1 ≤ i ≤ n, like 2/3
+run short.toml --shard 2 | 2 | `--shard 2` is not a shard: write i/n with 1 ≤ i ≤ n, like 2/3
+new solver short.toml --scene mandel | 2 | `--scene` belongs to `oedometer new NAME`: `oedometer new-solver` writes an adapter for `terzaghi`
 solve terzaghi --set method=1 | 2 | `method` has a separate option: --method NAME
 solve terzaghi --set sweep.method=1 | 2 | `method` has a separate option: --method NAME
 solve terzaghi --set integrator=1 | 2 | `integrator` has a separate option: --integrator NAME
 solve terzaghi --set sweep.cells=1 | 2 | `cells` has a separate option: --cells NUMBER
 solve terzaghi --set points_per_cell=1 | 2 | `points_per_cell` has a separate option: --points-per-cell NUMBER
 solve terzaghi --set sweep.time_step=1 | 2 | `time_step` has a separate option: --time-step RULE
-solve terzaghi --set task=1 | 2 | `--set task` has no effect here: `oedometer stability` looks for critical steps
+solve terzaghi --set task=1 | 2 | `--set task` has no effect here: `oedometer stability` finds critical steps
 solve terzaghi --set timing.repeats=1 | 2 | `--set timing.repeats` has no effect here: cases are timed by `oedometer run` with a study file
 exact terzaghi --set case_seconds=1 | 2 | `--set case_seconds` has no effect here: nothing is run
 exact terzaghi --set scene=layered | 2 | `scene` is given by the solution's name and by `--set`: leave one out
@@ -110,7 +110,7 @@ fn a_job_list_goes_on_where_its_results_are() {
         let words: Vec<&str> = ["plan", "short.toml"].into_iter().chain(options.split(' ')).collect();
         let told = call(folder.path(), &words);
         assert_eq!((told.code, told.out), (0, format!("oedometer run short.toml {list}\n")), "{options}");
-        assert!(told.err.starts_with("1 share: the largest takes "), "{}", told.err);
+        assert!(told.err.starts_with("1 shard: the largest takes "), "{}", told.err);
     }
 }
 
@@ -143,7 +143,7 @@ fn all_names_are_listed_under_their_headings() {
     let (heading, mut shipped) = sections.pop().expect("a section");
     assert_eq!(
         (heading, shipped[0].0, shipped[shipped.len() - 1].0),
-        ("shipped studies", "terzaghi-mesh", "race-footing")
+        ("built-in studies", "terzaghi-mesh", "race-footing")
     );
     shipped.sort_unstable();
     let mut wanted: Vec<(&str, &str)> = titles.iter().map(|(name, title)| (&**name, &**title)).collect();
@@ -154,14 +154,14 @@ fn all_names_are_listed_under_their_headings() {
     assert_eq!(
         sections,
         [
-            ("scenes", SCENES.map(|scene| (scene.name, scene.summary)).to_vec()),
+            ("benchmark problems (scenes)", SCENES.map(|scene| (scene.name, scene.summary)).to_vec()),
             ("methods", names.iter().zip(&choices).map(|(name, parts)| (&**name, &**parts)).collect()),
             ("integrators", with_nothing(&IntegratorKind::NAMES)),
             (
                 "references",
                 with_nothing(&ReferenceKind::ALL.iter().map(|kind| kind.name()).collect::<Vec<_>>())
             ),
-            ("exact problems without a solver", with_nothing(&ShelfProblem::NAMES)),
+            ("exact solutions only, without a solver here", with_nothing(&ShelfProblem::NAMES)),
         ]
     );
 }

@@ -224,7 +224,7 @@ const NEW: &[&str] = &[
     "new trial",
     "new trial",
     "new theirs adapter --language shell",
-    "new solver theirs --language shell",
+    "new-solver theirs --language shell",
     "new solver theirs2 --language python --scene mandel",
     "plan trial.toml",
 ];

@@ -42,9 +42,9 @@ fn a_starter_runs_and_meets_what_it_expects() {
     let told = call(at, &["new", "slab", "--scene", "mandel"]);
     assert!(told.code == 2 && told.err.contains("list --show mandel"), "{}", told.err);
     let told = call(at, &["new", "slab", "--scene", "mandle"]);
-    assert!(told.code == 2 && told.err.contains("the scene `mandle` has no starter"), "{}", told.err);
+    assert!(told.code == 2 && told.err.contains("no starter for `mandle`"), "{}", told.err);
     let again = call(at, &["new", "my-study"]);
-    assert!(again.code == 2 && again.err.contains("exists already"), "{}", again.err);
+    assert!(again.code == 2 && again.err.contains("already exists"), "{}", again.err);
     assert_eq!(call(at, &["new", "My Study"]).code, 2);
 }
 
@@ -249,7 +249,7 @@ fn mistakes_at_the_command_line_are_answered_with_what_to_type() {
     for (typed, parts) in [
         (&["check", "short"][..], &["did you mean the file `short.toml`?"][..]),
         (&["check", "shrt.toml"], &["did you mean `short.toml`?"]),
-        (&["check", "terzaghi-mesh.toml"], &["the shipped study is called `terzaghi-mesh`"]),
+        (&["check", "terzaghi-mesh.toml"], &["the built-in study is called `terzaghi-mesh`"]),
         (&["run", "empty"], &["the folder empty has no study"]),
         (&["run", "nothing-like-it"], &["`oedometer new NAME`"]),
         (&["run", "short.toml", "--case", "zzz"], &["no case has a hash that begins with `zzz`"]),

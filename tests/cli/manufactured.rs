@@ -49,9 +49,12 @@ fn what_a_motion_cannot_have_is_refused_in_sentences() {
     for (arguments, sentence) in [
         (
             &["manufactured-box", "--set", "column.load=1.0"][..],
-            "the scene `manufactured-box` has no [column]",
+            "the problem `manufactured-box` has no [column]",
         ),
-        (&["manufactured-box", "--set", "points.offset=0.1"], "the scene `manufactured-box` has no [points]"),
+        (
+            &["manufactured-box", "--set", "points.offset=0.1"],
+            "the problem `manufactured-box` has no [points]",
+        ),
         (&["manufactured-box", "--set", "manufactured.amplitude=1.0"], "this motion has two amplitudes"),
         (&["manufactured-vortex", "--set", "manufactured.amplitude_x=0.1"], "a vortex has one amplitude"),
         (&["manufactured-box", "--set", "manufactured.amplitude_x=1.2"], "from 1 on it folds the body"),

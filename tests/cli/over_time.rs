@@ -101,7 +101,7 @@ fn bisect_finds_the_commit_that_moved_the_results_and_skips_what_cannot_be_tried
     assert!(told.out.contains(" moved, in 2 cases"), "{}", told.out);
     assert!(told.err.contains(" skip: Break the build"), "{}", told.err);
     let skipped: Vec<&str> = told.out.lines().filter_map(|line| line.strip_prefix("  skipped ")).collect();
-    let why = " Break the build: the build failed: exit status: 1: it said nothing";
+    let why = " Break the build: the build failed: exit status: 1: it printed nothing";
     assert!(skipped.iter().any(|line| line.ends_with(why) && line.len() == 8 + why.len()), "{skipped:?}");
     // The user's own work tree is as it was.
     assert_eq!(git(folder.path(), &["status", "--porcelain"]), before);
@@ -201,7 +201,7 @@ fn what_cannot_be_compared_is_refused_in_sentences() {
         "is neither a folder nor a revision",
     );
     let outside = TempDir::new().expect("a folder");
-    refused(outside.path(), &["history"], "is in no git repository");
+    refused(outside.path(), &["history"], "is not in a git repository");
     let [there, root] = [outside.path(), at].map(|folder| folder.canonicalize().expect("a folder"));
     let told = format!("error: {} lies outside the repository {}\n", there.display(), root.display());
     refused(at, &["history", "--golden", &there.display().to_string()], &told);
@@ -209,14 +209,14 @@ fn what_cannot_be_compared_is_refused_in_sentences() {
     fs::write(at.join("golden/gate.csv"), "{\"schema\": 1}\n").expect("written");
     git(at, &["commit", "-q", "-a", "-m", "Write another layout"]);
     let told = call(at, &["history"]);
-    assert!(told.code == 0 && told.err.contains("is passed over"), "{}", told.err);
+    assert!(told.code == 0 && told.err.contains("is skipped"), "{}", told.err);
     for number in 2..6 {
         fs::write(at.join("golden/gate.csv"), format!("{{\"schema\": {number}}}\n")).expect("written");
         git(at, &["commit", "-q", "-a", "-m", "Write one more"]);
     }
     let told = call(at, &["history"]);
     let lines: Vec<&str> = told.err.lines().collect();
-    assert_eq!((lines.len(), lines[3]), (4, "2 more files are passed over"), "{}", told.err);
+    assert_eq!((lines.len(), lines[3]), (4, "2 more files are skipped"), "{}", told.err);
 }
 
 /// A solver in Python, right but for a factor, with its study.
@@ -310,14 +310,14 @@ fn states_that_are_not_whole_are_told_in_sentences() {
     git(at, &["commit", "-q", "-m", "Write the first layout"]);
     fs::write(at.join("golden/gate.csv"), golden([9e-2, 9e-2], "not committed")).expect("written");
     let told = call(at, &["history"]);
-    assert!(told.code == 0 && told.err.contains("1 golden file in JSON is passed over"), "{}", told.err);
+    assert!(told.code == 0 && told.err.contains("1 golden file in JSON is skipped"), "{}", told.err);
     assert!(told.err.contains("uncommitted changes"), "{}", told.err);
     git(at, &["checkout", "-q", "--", "golden/gate.csv"]);
     // Records of another layout.
     assert_eq!(call(at, &["run", "studies/gate.toml", "--out", "a"]).code, 0);
     change_records(&at.join("a"), "gate", |number, record| record.schema += u32::from(number == 0));
     let told = call(at, &["compare", "a", "a"]);
-    assert!(told.err.contains("1 record of `gate`") && told.err.contains("passed over"), "{}", told.err);
+    assert!(told.err.contains("1 record of `gate`") && told.err.contains("skipped"), "{}", told.err);
     // A shallow clone, and no git at all.
     let clone = TempDir::new().expect("a folder");
     let from = format!("file://{}", at.display());

@@ -169,7 +169,7 @@ fn a_resumed_run_keeps_what_nothing_proves_only_where_it_is_asked_to_and_says_so
         (place.runs() - before, told.err)
     };
     let (runs, told) = resumed(&["--keep-unproven"]);
-    let words = "`mine` was not run: 1 result taken over (mine cells=10), made by `mine 1.2`, `sh adapter.sh";
+    let words = "`mine` was not run: 1 result reused (mine cells=10), made by `mine 1.2`, `sh adapter.sh";
     assert!(runs == 0 && told.contains(words) && told.contains("nothing proves"), "{told}");
     let (runs, told) = resumed(&[]);
     assert!(runs == 1 && told.contains("not reused") && told.contains("--keep-unproven"), "{told}");
@@ -199,9 +199,9 @@ fn what_is_declared_is_taken_over_by_name_until_a_part_of_it_changes() {
         let check = |is_ci: bool| {
             let before = place.runs();
             let told = place.call(is_ci, &["check", place.study, "--junit", "j.xml"]);
-            let is_named = told.words().contains("`mine` was not run: 1 result taken over (mine cells=10)");
+            let is_named = told.words().contains("`mine` was not run: 1 result reused (mine cells=10)");
             let junit = fs::read_to_string(place.here.join("j.xml")).expect("JUnit");
-            assert_eq!(is_named, junit.contains("1 result taken over (mine cells=10)"), "{junit}");
+            assert_eq!(is_named, junit.contains("1 result reused (mine cells=10)"), "{junit}");
             assert_eq!(is_named, place.runs() == before, "{}", told.out);
             (told.code, is_named)
         };
@@ -221,14 +221,14 @@ fn what_is_declared_is_taken_over_by_name_until_a_part_of_it_changes() {
             assert!(told.out.contains("mine cells=10"), "{format}: {}", told.out);
         }
         let fresh = place.call(false, &["check", place.study, "--fresh"]);
-        assert!(fresh.code == 0 && !fresh.out.contains("taken over"), "{}", fresh.out);
+        assert!(fresh.code == 0 && !fresh.out.contains(" reused ("), "{}", fresh.out);
         // A page names it too, and a run that goes on takes it over without a flag.
         let before = place.runs();
         let told = place.call(false, &["run", place.study, "--resume"]);
         assert!(told.err.contains("whose version and named files are unchanged"), "{}", told.err);
         place.call(false, &["report", place.study, "--out", "pages"]);
         let page = fs::read_to_string(place.here.join("pages/studies/s.md")).expect("a page");
-        assert!(page.contains("1 result taken over (mine cells=10)") && place.runs() == before, "{page}");
+        assert!(page.contains("1 result reused (mine cells=10)") && place.runs() == before, "{page}");
     }
 }
 

@@ -305,7 +305,7 @@ fn a_result_that_is_not_whole_is_told_and_fails_a_gate() {
     }
     let told = score(at, &whole, &["--strict"]);
     assert!(
-        told.code == 0 && told.err.contains("give the required times with --time-factor"),
+        told.code == 0 && told.err.contains("name the required times with --time-factor"),
         "{}",
         told.err
     );
@@ -511,7 +511,7 @@ fn what_is_not_judged_is_told_and_strict_does_not_pass_it() {
             let is_lacking = lacks.contains(&lack);
             assert_eq!(told(&strict, "fail: a.csv: ", "", lack), is_lacking, "{lack}: {}", strict.err);
             assert_eq!(
-                told(&below, "note: a.csv: ", "`--strict` does not pass this", lack),
+                told(&below, "note: a.csv: ", "`--strict` fails on this", lack),
                 is_lacking,
                 "{}",
                 below.err

@@ -204,7 +204,7 @@ fn shares_by_cost_part_the_cases_exactly_and_merge_to_the_table_of_one_machine()
     let at = folder.path();
     let list = call(at, &["plan", "short.toml", "--tasks", "3", "--balance", "--out", "parts"]);
     assert_eq!((list.code, list.out.lines().count()), (0, 3), "{}", list.err);
-    assert!(list.err.contains("3 shares: the largest takes"), "{}", list.err);
+    assert!(list.err.contains("3 shards: the largest takes"), "{}", list.err);
     for line in list.out.lines() {
         let words: Vec<&str> = line.split(' ').collect();
         assert_eq!(&words[..3], &["oedometer", "run", "short.toml"]);
@@ -239,7 +239,7 @@ fn an_empty_share_is_no_failure_and_a_case_larger_than_a_share_is_said() {
     let told = run(at, &["--shard", "999999/1000000", "--tier", "smoke"]);
     assert_eq!(told.code, 4, "no case of the tier at all: {}", told.err);
     let told = run(at, &["--shard", "999999/1000000"]);
-    assert!(told.code == 0 && told.err.contains("share 999999 of 1000000 has no case"), "{}", told.err);
+    assert!(told.code == 0 && told.err.contains("shard 999999 of 1000000 has no case"), "{}", told.err);
     assert!(!at.join("out").exists(), "nothing selected, nothing written");
     let told = call(at, &["plan", "short.toml", "--tasks", "1000", "--balance"]);
     assert!(told.err.contains("one case alone takes") && told.err.contains("gain nothing"), "{}", told.err);
@@ -339,7 +339,7 @@ fn more_tasks_than_an_array_takes_are_as_many_shares_as_it_takes() {
     };
     let told = with("8", "--dry-run");
     assert!(
-        told.code == 0 && told.err.contains("this Slurm takes at most 3 tasks per array"),
+        told.code == 0 && told.err.contains("this Slurm accepts at most 3 tasks per array"),
         "{}",
         told.err
     );
@@ -410,7 +410,7 @@ fn records_of_another_machine_are_merged_and_counted_and_those_of_other_sources_
     });
     let told = call(at, &["merge", "short.toml", "first", "machine", "--out", "both"]);
     assert_eq!(told.code, 0, "{}", told.err);
-    assert!(told.err.contains("records of several builds of one program"), "{}", told.err);
+    assert!(told.err.contains("the records come from several builds of one program"), "{}", told.err);
     assert_eq!(table(at, "both"), expected, "values do not depend on the machine");
     let list = call(at, &["records", "both/short"]).out;
     let elsewhere = list.lines().filter(|row| row.contains(",another,Another CPU,"));

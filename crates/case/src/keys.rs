@@ -245,9 +245,9 @@ keys! {
     drag in &["sweep", "integrator"], Kind::Word(&Drag::NAMES), "", [settings.drag];
         "Time level of the velocities in the drag"
     flip in &["sweep", "integrator"], SHARE_OF_FLIP, "", [settings.flip];
-        "Share of FLIP in the velocities of the points; the rest is PIC"
+        "FLIP fraction of the velocity update; the rest is PIC"
     mapping_back in &["sweep", "integrator"], Kind::Flag, "", [settings.mapping_back];
-        "Update stresses with velocities mapped back from the points"
+        "Update stresses with velocities mapped back from the points (MUSL)"
     affine in &["sweep", "integrator"], Kind::Flag, "", [settings.affine];
         "Moving points carry gradients of their velocities to the nodes (APIC)"
     stress_slopes in &["sweep", "integrator"], Kind::Flag, "", [settings.stress_slopes];
@@ -312,7 +312,7 @@ keys! {
     initial_stress in &["sweep", "column"], Kind::Number(Range::NotNegative), "Pa", [column.initial_stress];
         "Initial vertical effective stress of a preconsolidated soil, compression positive"
     reload_modulus in &["sweep", "material"], POSITIVE, "Pa", [material.reload_modulus];
-        "Oedometric modulus of a preconsolidated soil in unloading and reloading"
+        "Unloading–reloading modulus of a preconsolidated soil (oedometric)"
     undrained_strength in &["sweep", "material"], POSITIVE, "Pa", [material.undrained_strength];
         "Undrained shear strength of the law `von-mises`"
     preconsolidation in &["sweep", "material"], POSITIVE, "Pa", [material.preconsolidation];

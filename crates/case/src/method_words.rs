@@ -59,20 +59,19 @@ pub fn parts(method: &Method) -> Vec<MethodPart> {
 
 fn of_basis(basis: Basis) -> (&'static str, &'static str) {
     match basis {
-        Basis::Hat => (
-            "each point is a place without extent; shape functions are linear hats",
-            "Sulsky, Chen & Schreyer 1994",
-        ),
+        Basis::Hat => {
+            ("each point has no extent; shape functions are linear", "Sulsky, Chen & Schreyer 1994")
+        }
         Basis::Ugimp => (
-            "each point has a domain of fixed length, over which the hats are averaged",
+            "each point has a domain of fixed length, over which the linear shape functions are averaged",
             "Bardenhagen & Kober 2004",
         ),
         Basis::Cpgimp => (
-            "each point has a domain that stretches with the soil, over which the hats are averaged",
+            "each point has a domain that stretches with the soil, over which the linear shape functions are averaged",
             "Bardenhagen & Kober 2004",
         ),
         Basis::Cpdi => (
-            "hats are averaged over the corners of domains that stretch, turn and shear with the soil",
+            "linear shape functions are averaged over the corners of domains that stretch, rotate and shear with the soil",
             "Sadeghirad, Brannon & Burghardt 2011",
         ),
         Basis::Bspline2 => {
@@ -97,10 +96,10 @@ fn of_strain(strain: StrainGradient) -> (&'static str, &'static str) {
             "after González Acosta, Vardon & Hicks 2017",
         ),
         StrainGradient::Bbar => {
-            ("the volumetric strain of the skeleton is the one that drives the pore pressure (B-bar)", BBAR)
+            ("the skeleton takes the volumetric strain that drives the pore pressure (B-bar)", BBAR)
         }
         StrainGradient::CmpmBbar => (
-            "strains come from the composite cubic, and their volumetric part is the one that drives the pore pressure (B-bar)",
+            "strains come from the composite cubic, and their volumetric part is that which drives the pore pressure (B-bar)",
             "González Acosta, Vardon & Hicks 2017; Hughes 1980; Coombs et al. 2018",
         ),
     }

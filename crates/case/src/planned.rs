@@ -121,7 +121,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Shared<T> {
 pub enum Tier {
     /// Seconds.
     Smoke,
-    /// What a CI runs.
+    /// What CI runs.
     #[default]
     Ci,
     /// Everything.

@@ -106,7 +106,7 @@ impl SeriesDemand {
             ),
             (
                 floor.is_none_or(is_band),
-                "the floor must lie between `above`, 0 or more, and a larger `below`",
+                "the plateau must lie between `above`, 0 or more, and a larger `below`",
             ),
             (oscillation.is_none_or(f64::is_finite), "the bound on the oscillation must be a number"),
             (uncertainty.is_none_or(positive), "the bound on the uncertainty must be a positive number"),

@@ -118,7 +118,7 @@ fn of_status(status: ExitStatus) -> Option<(FailureKind, String)> {
     match status.code() {
         Some(0) => None,
         Some(SKIPPED) => {
-            Some((FailureKind::Skipped, format!("it says that it cannot run here (exit code {SKIPPED})")))
+            Some((FailureKind::Skipped, format!("it reports that it cannot run here (exit code {SKIPPED})")))
         }
         Some(code) => Some((
             FailureKind::Failed,
@@ -225,9 +225,9 @@ fn last_words(run: &Finished) -> String {
     let last = &own[own.len().saturating_sub(TOLD_LINES)..];
     let first = first_message(&run.errors).or_else(|| first_message(&run.output));
     match first.filter(|first| !last.contains(first)) {
-        Some(first) => format!(". It said first: {first}. The last it said: {}", last.join(" / ")),
+        Some(first) => format!(". Its output began: {first}. It ended: {}", last.join(" / ")),
         None if last.is_empty() => String::new(),
-        None => format!(". The last it said: {}", last.join(" / ")),
+        None => format!(". Its output ended: {}", last.join(" / ")),
     }
 }
 

@@ -6,6 +6,27 @@ use oedometer_case::keys::{KEYS, Key};
 /// Keys of earlier versions, and what they are called now.
 const RENAMED: [(&str, &str); 2] = [("layers", "sets"), ("one_layer_within", "one_set_within")];
 
+/// Terms of the field, each with the key or word of a study file that it is read as.
+pub const FIELD_TERMS: [(&str, &str); 12] = [
+    ("benchmark_problem", "scene"),
+    ("musl", "mapping_back"),
+    ("unloading_reloading_modulus", "reload_modulus"),
+    ("test_level", "tier"),
+    ("zip", "path"),
+    ("error_plateau", "floor"),
+    ("safety_factor", "stable"),
+    ("step_over_elapsed_time", "growth"),
+    ("bearing_capacity_factor", "load_factor"),
+    ("hydrostatic-equilibrium", "at-rest"),
+    ("first-eigenmode", "single-mode"),
+    ("dynamic-first-eigenmode", "dynamic-single-mode"),
+];
+
+/// The key or word of a study file that a term of the field is read as; any other word is itself.
+pub fn read_as(term: &str) -> &str {
+    FIELD_TERMS.iter().find(|(field, _)| *field == term).map_or(term, |(_, word)| word)
+}
+
 /// Keys of the tables that hold no input of a case.
 const TABLE_KEYS: [(&str, &[&str]); 2] =
     [("output", &["time_factors", "times", "references"]), ("timing", &["repeats"])];
@@ -223,6 +244,9 @@ pub const WORDS: &[(&[&str], &str)] = &[
 pub(crate) fn help_for_key(name: &str, known: &[&str]) -> String {
     if let Some((_, new)) = RENAMED.iter().find(|(old, new)| *old == name && known.contains(new)) {
         return format!("it is called `{new}` now");
+    }
+    if known.contains(&read_as(name)) {
+        return format!("it is another name of `{}`: leave one of them out", read_as(name));
     }
     let usual = meant(KEY_NAMES, name).filter(|key| *key != name);
     if let Some(key) = usual.filter(|key| known.contains(key)) {

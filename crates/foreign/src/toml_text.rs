@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, StudyError, one_of};
 use crate::source::StudySource;
-use crate::synonyms::{derived, help_for_key};
+use crate::synonyms::{FIELD_TERMS, derived, help_for_key, read_as};
 use crate::units::{has_unit, in_si, is_thousands, leading_number};
 use oedometer_case::keys::Key;
 use schemars::JsonSchema;
@@ -83,7 +83,10 @@ impl StudySource {
         &self,
         read: impl Fn(Spanned<DeTable<'_>>) -> Result<T, Error>,
     ) -> Result<T, StudyError> {
-        let root = DeTable::parse(&self.text).map_err(|error| self.error(vec![self.syntax(&error)]))?;
+        let mut root = DeTable::parse(&self.text).map_err(|error| self.error(vec![self.syntax(&error)]))?;
+        if FIELD_TERMS.iter().any(|(term, _)| self.text.contains(term)) {
+            read_terms(&schema_of::<T>(), root.as_mut());
+        }
         read(root.clone()).or_else(|error| {
             let mut mistakes = Mistakes { text: &self.text, found: Vec::new(), quantities: Vec::new() };
             mistakes.of_table(&schema_of::<T>(), root.get_ref(), 0..0, "");
@@ -189,6 +192,41 @@ fn line_mistake(line: &str) -> (Option<String>, String) {
 fn is_decimal_comma(value: &str) -> bool {
     let is_digits = |part: &str| !part.is_empty() && part.chars().all(|letter| letter.is_ascii_digit());
     value.split_once(',').is_some_and(|(whole, decimals)| is_digits(whole) && is_digits(decimals))
+}
+
+/// Puts keys and words of the schema in place of terms of the field that are read as them.
+fn read_terms(schema: &Value, table: &mut DeTable<'_>) {
+    let Some(properties) = schema["properties"].as_object() else { return };
+    for (term, key) in FIELD_TERMS {
+        let is_meant = properties.contains_key(key) && !properties.contains_key(term);
+        if is_meant
+            && !table.contains_key(key)
+            && let Some((name, value)) = table.remove_entry(term)
+        {
+            table.insert(Spanned::new(name.span(), key.into()), value);
+        }
+    }
+    for (name, value) in table.iter_mut() {
+        if let Some(schema) = properties.get(name.get_ref().as_ref()) {
+            read_terms_of(schema, value);
+        }
+    }
+}
+
+/// The same in a value.
+fn read_terms_of(schema: &Value, value: &mut Spanned<DeValue<'_>>) {
+    let choices = schema["anyOf"].as_array();
+    let schema =
+        choices.and_then(|all| all.iter().rfind(|choice| fits(choice, value.get_ref()))).unwrap_or(schema);
+    match value.as_mut() {
+        DeValue::Table(table) => read_terms(schema, table),
+        DeValue::Array(list) => list.iter_mut().for_each(|item| read_terms_of(&schema["items"], item)),
+        DeValue::String(word) if names_of(schema).contains(&read_as(word)) => {
+            let known = read_as(word).to_owned();
+            *word = known.into();
+        }
+        _ => {}
+    }
 }
 
 /// A text with the numbers of quantities in place of the words that stand there.

@@ -25,7 +25,7 @@ impl Budget {
     pub(crate) fn take(&mut self, bytes: u64) -> Result<(), String> {
         let left = self.left.checked_sub(bytes);
         self.left = left.ok_or_else(|| {
-            format!("it claims {bytes} bytes, and a file of its size may take {} more", self.left)
+            format!("it declares {bytes} bytes, and a file of its size may hold {} more", self.left)
         })?;
         Ok(())
     }
@@ -177,7 +177,7 @@ pub fn excerpt(text: &str) -> String {
 /// themselves: behind that end zlib compares the bytes with their checksum (Adler-32).
 pub(crate) fn unpack(packed: &[u8], length: usize, is_zlib: bool) -> Result<Vec<u8>, String> {
     if length as u64 > DEFLATE_RATIO * packed.len() as u64 {
-        return Err(format!("{} packed bytes cannot hold the {length} that they claim", packed.len()));
+        return Err(format!("{} compressed bytes cannot hold the {length} that they declare", packed.len()));
     }
     let unpacked = if is_zlib {
         decompress_to_vec_zlib_with_limit(packed, length)
@@ -186,11 +186,11 @@ pub(crate) fn unpack(packed: &[u8], length: usize, is_zlib: bool) -> Result<Vec<
     };
     match unpacked {
         Ok(bytes) if bytes.len() == length => Ok(bytes),
-        Ok(_) => Err(format!("its packed data hold less than the {length} bytes that they claim")),
+        Ok(_) => Err(format!("its compressed data hold fewer than the {length} bytes that they declare")),
         Err(error) if error.status == TINFLStatus::HasMoreOutput => {
-            Err(format!("its packed data hold more than the {length} bytes that they claim"))
+            Err(format!("its compressed data hold more than the {length} bytes that they declare"))
         }
-        Err(_) => Err("its packed data are damaged, or cut before their checksum".to_owned()),
+        Err(_) => Err("its compressed data are damaged, or cut before their checksum".to_owned()),
     }
 }
 
@@ -221,7 +221,7 @@ mod tests {
     fn packed_data_have_exactly_the_length_that_they_claim() {
         let empty = [0x78, 0x9c, 0x03, 0, 0, 0, 0, 1];
         assert_eq!(unpack(&empty, 0, true), Ok(Vec::new()));
-        assert!(unpack(&empty, 1, true).is_err_and(|why| why.contains("less than the 1 bytes")));
+        assert!(unpack(&empty, 1, true).is_err_and(|why| why.contains("fewer than the 1 bytes")));
         let packed = miniz_oxide::deflate::compress_to_vec(&[7; 100], 6);
         assert_eq!(unpack(&packed, 100, false), Ok(vec![7; 100]));
         assert!(unpack(&packed, 99, false).is_err_and(|why| why.contains("more than the 99 bytes")));

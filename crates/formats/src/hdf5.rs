@@ -126,7 +126,9 @@ impl Store {
             listed.ok_or_else(|| named("the file does not have it".to_owned()))?;
         let per_row = product(shape.get(1..).unwrap_or_default()).map_err(named)?;
         let (first, count) = rows.unwrap_or((0, shape.first().copied().unwrap_or(1)));
-        let total = per_row.checked_mul(count).ok_or_else(|| named("it claims too much".to_owned()))?;
+        let total = per_row
+            .checked_mul(count)
+            .ok_or_else(|| named("it declares more than it can hold".to_owned()))?;
         let width = set.element_size().map_err(|error| named(damaged(&error)))?.max(8);
         self.budget.take(total.saturating_mul(width)).map_err(named)?;
         let numbers = match rows {
@@ -189,9 +191,11 @@ impl Store {
             if !is_number {
                 continue;
             }
-            let count = |length: u64| usize::try_from(length).map_err(|_| "it claims too much".to_owned());
+            let count = |length: u64| {
+                usize::try_from(length).map_err(|_| "it declares more than it can hold".to_owned())
+            };
             let shape = shape.into_iter().map(count).collect::<Result<Vec<usize>, String>>()?;
-            let too_much = || "its shape has more numbers than any file".to_owned();
+            let too_much = || "its shape is larger than any file".to_owned();
             let components = shape.iter().skip(1).try_fold(1_usize, |all, axis| all.checked_mul(*axis));
             let is_place = is_named(&path, &PLACES);
             let mut array = Array {
@@ -225,7 +229,7 @@ impl Store {
         let Listed { shape, set, .. } = &self.sets[number];
         let Ok(Datatype::Compound { size, members }) = set.datatype() else { return Ok(false) };
         let rows = product(shape)?;
-        let tuples = usize::try_from(rows).map_err(|_| "it claims too much")?;
+        let tuples = usize::try_from(rows).map_err(|_| "it declares more than it can hold")?;
         let axis_of = |name: &str| PLACE.iter().position(|axis| *axis == name);
         let is_wanted = |name: &str| wanted.has(name) || axis_of(name).is_some();
         let any = members.iter().any(|member| is_wanted(&member.name));
@@ -328,7 +332,7 @@ fn is_named(path: &str, names: &[&str]) -> bool {
 
 fn product(shape: &[u64]) -> Result<u64, String> {
     let all = shape.iter().try_fold(1_u64, |all, one| all.checked_mul(*one));
-    all.ok_or_else(|| "its shape has more numbers than any file".to_owned())
+    all.ok_or_else(|| "its shape is larger than any file".to_owned())
 }
 
 /// The bytes of a field that begins so many bytes behind the start of its record.
@@ -342,7 +346,7 @@ fn damaged(error: &hdf5_pure::Error) -> String {
     let told = error.to_string();
     if ["not supported", "nsupported", "virtual"].iter().any(|word| told.contains(word)) {
         return format!(
-            "its HDF5 has what is not read ({told}): write the numbers themselves, like `g[\"p\"] = f[\"p\"][:]` of h5py"
+            "its HDF5 uses a feature that is not read ({told}): write the numbers themselves, like `g[\"p\"] = f[\"p\"][:]` of h5py"
         );
     }
     format!("its HDF5 is damaged: {told}")

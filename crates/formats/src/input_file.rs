@@ -86,7 +86,7 @@ fn unpacked(packed: &[u8], most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     MultiGzDecoder::new(packed).take(most + 1).read_to_end(&mut bytes).map_err(|error| damaged(&error))?;
     if bytes.len() as u64 > most {
-        return Err(refused(format!("it unpacks to more than {most} bytes: unpack it first")));
+        return Err(refused(format!("it decompresses to more than {most} bytes: decompress it first")));
     }
     Ok(bytes)
 }
@@ -233,6 +233,6 @@ mod tests {
         }
         let bomb = pack(&vec![0; 100 << 20]);
         std::fs::write(&path, &bomb).expect("a file");
-        assert!(read(&path).is_err_and(|error| error.to_string().contains("unpack it first")));
+        assert!(read(&path).is_err_and(|error| error.to_string().contains("decompress it first")));
     }
 }

@@ -73,10 +73,11 @@ fn member<'a>(
     let content: Cow<[u8]> = match method {
         CompressionMethod::STORE => entry.data().into(),
         CompressionMethod::DEFLATE => {
-            let length = usize::try_from(claim.uncompressed_size).map_err(|_| "it claims too much")?;
+            let length =
+                usize::try_from(claim.uncompressed_size).map_err(|_| "it declares more than it can hold")?;
             unpack(entry.data(), length, false)?.into()
         }
-        method => return Err(format!("its packing {method:?} is unknown: NumPy stores or deflates")),
+        method => return Err(format!("its compression {method:?} is unknown: NumPy stores or deflates")),
     };
     let found = ZipVerification { crc: rawzip::crc32(&content), uncompressed_size: content.len() as u64 };
     claim.valid(found).map_err(|error| format!("it is damaged: {error}"))?;
@@ -181,7 +182,7 @@ impl Header {
             None => (Association::Whole, 1, &[][..]),
             Some((tuples, rest)) => (Association::Points, *tuples, rest),
         };
-        let too_many = || "its shape has more numbers than any file".to_owned();
+        let too_many = || "its shape is larger than any file".to_owned();
         let components =
             rest.iter().try_fold(1_usize, |all, one| all.checked_mul(*one)).ok_or_else(too_many)?;
         let total = components.checked_mul(tuples).ok_or_else(too_many)?;
@@ -205,7 +206,7 @@ impl Header {
 impl Header {
     /// The fields of records as arrays, their names behind a prefix.
     fn records(&self, prefix: &str, bytes: &[u8], wanted: Wanted) -> Result<Vec<Array>, String> {
-        let too_many = || "its shape has more numbers than any file".to_owned();
+        let too_many = || "its shape is larger than any file".to_owned();
         let tuples =
             self.shape.iter().try_fold(1_usize, |all, one| all.checked_mul(*one)).ok_or_else(too_many)?;
         let record: usize = self.fields.iter().map(|field| field.size).sum();
@@ -281,7 +282,7 @@ mod tests {
         let header = "{'descr': '|O', 'fortran_order': False, 'shape': (), }";
         assert!(values(&npy(header, b"cos\nsystem\n")).is_err_and(|why| why.contains("never opened")));
         let header = "{'descr': '<f8', 'shape': (99999999999, 99999999999, 9), }";
-        assert!(values(&npy(header, &[])).is_err_and(|why| why.contains("more numbers")));
+        assert!(values(&npy(header, &[])).is_err_and(|why| why.contains("larger than any file")));
     }
 
     #[test]

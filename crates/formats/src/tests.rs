@@ -480,7 +480,7 @@ fn a_document_that_declares_more_numbers_than_memory_has_is_refused() {
         std::fs::write(&path, xdmf_of(std::iter::once(pressure_of(&item)))).expect("a file");
         let steps = steps_of(&path, &mut Vec::new()).expect("one state");
         let refused = first_frame(&steps, Wanted(&names)).map(|_| ()).map_err(|error| error.to_string());
-        assert!(refused.as_ref().is_err_and(|why| why.contains("it claims")), "{declared}: {refused:?}");
+        assert!(refused.as_ref().is_err_and(|why| why.contains("it declares")), "{declared}: {refused:?}");
     }
 }
 

@@ -174,12 +174,15 @@ impl Encoding<'_> {
         // Number of blocks, size of a block, size of the last one, packed sizes.
         let head = first.checked_add(3).and_then(|entries| entries.checked_mul(width));
         let head = head.filter(|head| *head <= data.len().max(3 * width)).ok_or_else(|| {
-            format!("{first} packed blocks are declared in {} bytes: the file is damaged or cut", data.len())
+            format!(
+                "{first} compressed blocks are declared in {} bytes: the file is damaged or cut",
+                data.len()
+            )
         })?;
         let header = self.sizes(&part(0, head)?)?;
         let (block, last, sizes) = (header[1], header[2], &header[3..]);
         let total = sizes.iter().try_fold(0_usize, |sum, size| sum.checked_add(*size));
-        let total = total.ok_or("its packed blocks are larger than any file")?;
+        let total = total.ok_or("its compressed blocks are larger than any file")?;
         let packed = part(symbols(head), total)?;
         let length_of = |place: usize| if place + 1 == sizes.len() && last > 0 { last } else { block };
         // What all blocks claim together is taken before any is unpacked.

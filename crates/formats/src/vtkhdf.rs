@@ -133,8 +133,8 @@ fn arrays(
             frame.arrays.push(Array {
                 name,
                 on,
-                components: usize::try_from(components).map_err(|_| "it claims too much")?,
-                tuples: usize::try_from(count).map_err(|_| "it claims too much")?,
+                components: usize::try_from(components).map_err(|_| "it declares more than it can hold")?,
+                tuples: usize::try_from(count).map_err(|_| "it declares more than it can hold")?,
                 values,
                 shape: Vec::new(),
             });

@@ -64,7 +64,7 @@ fn encoding_of<'a>(root: Node, appended: Option<Appended<'a>>) -> Result<Encodin
     let is_packed = match attribute(root, "compressor") {
         "" => false,
         "vtkZLibDataCompressor" => true,
-        other => return Err(format!("it is packed by {other}: write it with zlib, or not packed")),
+        other => return Err(format!("it is compressed by {other}: write it with zlib, or uncompressed")),
     };
     Ok(Encoding {
         is_little: attribute(root, "byte_order") != "BigEndian",

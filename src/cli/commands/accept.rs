@@ -40,7 +40,7 @@ pub struct Arguments {
     /// Folder of the golden values [default: `golden` beside the study or above]
     #[arg(long, value_name = "DIR")]
     golden: Option<PathBuf>,
-    /// Cases at the same time [default: all cores]
+    /// Number of cases that run in parallel [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
     #[command(flatten)]
@@ -127,7 +127,7 @@ fn with_golden(studies: Vec<Study>, are_named: bool) -> anyhow::Result<Vec<Study
         studies.into_iter().partition(|study| study.golden == GoldenRule::None);
     match without.first() {
         Some(study) if are_named || kept.is_empty() => Err(Ended::usage(format!(
-            "{}: the study says `golden = \"none\"`: leave that out to accept its values",
+            "{}: the study has `golden = \"none\"`: remove it to accept values",
             study.name
         ))),
         _ => Ok(kept),
@@ -148,7 +148,7 @@ fn refuse_failing(studies: &[Study], records: &[Vec<Record>], despite: bool) -> 
     if fails && !despite {
         return Err(Ended::with(
             Exit::VerdictFailed,
-            "nothing was accepted, because these fail: mend the code or the expectations first, or accept \
+            "nothing was accepted, because these fail: fix the code or the expectations first, or accept \
              the values with --despite-failing",
         ));
     }
@@ -165,7 +165,7 @@ pub fn refuse_without_origin() -> anyhow::Result<()> {
     }
     if Provenance::of_this_program().dirty {
         return Err(Ended::usage(
-            "the sources differ from their commit: commit and build first, so that golden values have an origin",
+            "the sources of this program have uncommitted changes: commit and build first, so that golden values can be traced",
         ));
     }
     Ok(())

@@ -28,7 +28,7 @@ pub struct Arguments {
     /// Revision with the right results
     #[arg(long, value_name = "A")]
     good: String,
-    /// Revision with the moved results
+    /// Revision with the changed results
     #[arg(long, value_name = "B")]
     bad: String,
     /// Command that runs the study in the folder of each commit and leaves its records in `{out}` [default:
@@ -38,7 +38,7 @@ pub struct Arguments {
     /// Command that builds the program; if it fails, the commit is skipped
     #[arg(long, value_name = "COMMAND")]
     build: Option<String>,
-    /// Start the programs that the study names in `[[solver]]`, in every commit
+    /// Start the programs that the study names in `[[solver]]` in each commit, with your permissions
     #[arg(long)]
     allow_solvers: bool,
 }
@@ -59,8 +59,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let trial = Trial::new(arguments, &repository, &bad)?;
     let ended = search(&trial, &good, &bad);
     trial.clean();
-    let found = ended?;
-    print_data(&found)?;
+    let first_bad = ended?;
+    print_data(&first_bad)?;
     Ok(Exit::Pass)
 }
 
@@ -89,14 +89,14 @@ fn search(trial: &Trial<'_>, good: &Commit, bad: &Commit) -> anyhow::Result<Stri
     }
     say!("{} values moved between {} and {}", moved.len(), good.short(), bad.short());
     let mut skipped = Vec::new();
-    let mut told = trial.git(&["bisect", "start", "--no-checkout", &bad.hash, &good.hash])?;
+    let mut output = trial.git(&["bisect", "start", "--no-checkout", &bad.hash, &good.hash])?;
     loop {
-        if let Some(hash) = told.lines().find_map(|line| line.strip_suffix(" is the first bad commit")) {
+        if let Some(hash) = output.lines().find_map(|line| line.strip_suffix(" is the first bad commit")) {
             return report(trial, &right, hash, &skipped);
         }
-        if told.contains("only 'skip'ped commits left") {
+        if output.contains("only 'skip'ped commits left") {
             let list =
-                told.lines().filter(|line| line.len() == 40).map(|hash| &hash[..8]).collect::<Vec<_>>();
+                output.lines().filter(|line| line.len() == 40).map(|hash| &hash[..8]).collect::<Vec<_>>();
             let reason = format!(
                 "the remaining commits cannot be tested; one of them is the first bad one: {}",
                 list.join(", ")
@@ -113,7 +113,7 @@ fn search(trial: &Trial<'_>, good: &Commit, bad: &Commit) -> anyhow::Result<Stri
             Err(reason) => skip(&mut skipped, &commit, &reason),
         };
         say!("{} {word}: {}", commit.short(), commit.subject);
-        told = trial.git(&["bisect", word, &commit.hash])?;
+        output = trial.git(&["bisect", word, &commit.hash])?;
     }
 }
 
@@ -145,7 +145,7 @@ fn moved_like(right: &StudyState, here: &StudyState, moved: &[Difference]) -> Op
         let tolerance = right.golden.tolerance(&difference.key, before.abs().max(value.abs()));
         after.is_finite() && (value - before).abs() > tolerance && (value > before) == (after > before)
     };
-    there.map(has_moved).reduce(|any, one| any || one)
+    there.map(has_moved).reduce(|any, moved| any || moved)
 }
 
 /// The first bad commit, what moved there, and what was skipped.
@@ -271,7 +271,7 @@ fn ended(command: &mut Command) -> Result<(), String> {
         return Ok(());
     }
     let said = String::from_utf8_lossy(&output.stderr);
-    let last = said.lines().rfind(|line| !line.trim().is_empty()).unwrap_or("it said nothing");
+    let last = said.lines().rfind(|line| !line.trim().is_empty()).unwrap_or("it printed nothing");
     Err(format!("{}: {}", output.status, last.trim()))
 }
 
@@ -370,7 +370,7 @@ mod tests {
         assert_eq!(of("echo odd >&2; exit 0"), Ok(()));
         let last = "echo first >&2; echo '  last  ' >&2; echo ' ' >&2; exit 3";
         assert_eq!(of(last), Err("exit status: 3: last".to_owned()));
-        assert_eq!(of("echo out; exit 4"), Err("exit status: 4: it said nothing".to_owned()));
+        assert_eq!(of("echo out; exit 4"), Err("exit status: 4: it printed nothing".to_owned()));
         let told = ended(&mut Command::new("no-such-program-of-a-test")).expect_err("no program");
         assert!(told.contains("No such file"), "{told}");
     }

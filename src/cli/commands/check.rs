@@ -35,17 +35,17 @@ pub struct Arguments {
     #[command(flatten)]
     studies: StudyArguments,
     /// Folder of the golden values
-    /// [default: `golden` beside the study or above; for shipped studies without a file there, those inside the program]
+    /// [default: `golden` beside the study or above; otherwise, for built-in studies, those in the program]
     #[arg(long, value_name = "DIR")]
     golden: Option<PathBuf>,
-    /// Folder of results; cases that this build has solved already are taken from there. Attached solvers always
-    /// run, unless the study declares what identifies them
+    /// Results folder; cases that this build has already solved are reused from it. Attached solvers always run,
+    /// unless the study declares what identifies them
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     records: PathBuf,
-    /// Cases at the same time [default: all cores]
+    /// Number of cases that run in parallel [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
-    /// Solve every case, and use no earlier results
+    /// Solve every case; reuse no earlier results
     #[arg(long)]
     fresh: bool,
     /// Write a `JUnit` report
@@ -54,10 +54,10 @@ pub struct Arguments {
     /// Append a summary in Markdown [default: $`GITHUB_STEP_SUMMARY`, if set]
     #[arg(long, value_name = "FILE")]
     summary: Option<PathBuf>,
-    /// Write annotations of study lines for GitHub to standard error; default in its workflows
+    /// Write GitHub annotations of study lines to standard error; default in GitHub workflows
     #[arg(long)]
     annotate: bool,
-    /// Print no more than the verdict on each study
+    /// Print only the verdict on each study
     #[arg(short, long, conflicts_with = "format")]
     quiet: bool,
     #[command(flatten)]
@@ -75,17 +75,17 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let (reports, golden) = reports_of(arguments, &studies, &chosen)?;
     let (results, tally) = results_of(&studies, &reports, golden);
     if results.is_empty() {
-        return Err(Ended::with(Exit::NothingSelected, "no study has a case in the CI tier"));
+        return Err(Ended::with(Exit::NothingSelected, "no study has a case at the test level `ci`"));
     }
     // What a study answers by itself stands below the verdict on it alone; a reference that refuses a case is a failure there.
     let answers = match results.as_slice() {
-        [one] if !arguments.quiet => {
-            let findings = answers(std::slice::from_ref(one), Place::Terminal).unwrap_or_default();
-            text_of_answers(&StudyAnswers::new(one.study, one.records, &one.paths), &findings)?
+        [results] if !arguments.quiet => {
+            let findings = answers(std::slice::from_ref(results), Place::Terminal).unwrap_or_default();
+            text_of_answers(&StudyAnswers::new(results.study, results.records, &results.paths), &findings)?
         }
         _ => String::new(),
     };
-    let checks: Vec<StudyCheck> = results.into_iter().map(|one| one.check).collect();
+    let checks: Vec<StudyCheck> = results.into_iter().map(|results| results.check).collect();
     let verdict = worst_of(&checks);
     // The verdict first; what could not be written is told after it, and hides it nowhere.
     let files = |study: &str| Some(chosen_as(study, &chosen)?.display().to_string());
@@ -167,9 +167,9 @@ fn results_of<'a>(
     for ((study, golden), report) in studies.iter().zip(golden).zip(reports) {
         tally.join(report.tally);
         if !(report.records.is_empty() && report.errors.is_empty()) {
-            let mut one = StudyResults::compared(study, &report.records, Tier::Ci, golden);
-            one.check = one.check.with_errors(&report.errors);
-            results.push(one.with_taken_over(&report.taken_over));
+            let mut compared = StudyResults::compared(study, &report.records, Tier::Ci, golden);
+            compared.check = compared.check.with_errors(&report.errors);
+            results.push(compared.with_taken_over(&report.taken_over));
         }
     }
     (results, tally)
@@ -351,7 +351,7 @@ mod tests {
         });
         assert_eq!(serde_json::to_value(CheckJson::of(&check)).expect("plain data"), wanted);
         let told = serde_json::to_value(CheckJson::of(&missing)).expect("plain data");
-        let why = "there is no golden file no-such-folder/t.csv: look at the results, then `oedometer accept` them with a reason";
+        let why = "there are no golden values yet (no-such-folder/t.csv): if the results look right, `oedometer accept` them with a reason";
         assert_eq!((&told["golden_problem"], &told["end"]), (&why.into(), &"golden".into()));
     }
 }

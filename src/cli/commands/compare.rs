@@ -13,10 +13,10 @@ use std::path::{Path, PathBuf};
 /// Arguments of `compare`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// State before: a folder of results that `run --out` wrote, or a git revision with golden values
+    /// First state: a results folder of `run --out`, or a git revision with golden values
     #[arg(value_name = "A")]
     before: String,
-    /// State after
+    /// Second state
     #[arg(value_name = "B")]
     after: String,
     /// Names of studies [default: all studies in both states]
@@ -25,7 +25,7 @@ pub struct Arguments {
     /// A and B are commands that replace the command of the study's `[[solver]]`
     #[arg(long)]
     commands: bool,
-    /// Rounds of both commands
+    /// How often each command runs, in turn
     #[arg(long, value_name = "N", default_value_t = 3, requires = "commands", value_parser = clap::value_parser!(u64).range(1..=1000))]
     rounds: u64,
     #[command(flatten)]
@@ -52,13 +52,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         let [before, after] = named.map(what_of);
         say!("compared: {before} with {after}; nothing was solved");
     }
-    let (mut found, notes) = compare_states(&before, &after, studies);
+    let (mut comparisons, notes) = compare_states(&before, &after, studies);
     for note in &notes {
         say!("{note}");
     }
     // Nothing that is the same is no agreement.
-    found.retain(|one| one.values + one.unpaired > 0);
-    if found.is_empty() {
+    comparisons.retain(|comparison| comparison.values + comparison.unpaired > 0);
+    if comparisons.is_empty() {
         return Err(Ended::with(
             Exit::NothingSelected,
             format!("{} and {} share no values of any study", before.name, after.name),
@@ -66,12 +66,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     let names = [before.name.as_str(), &after.name];
     match arguments.format {
-        TableFormat::Json => print_data(&json_of(&found)?)?,
-        TableFormat::Csv => print_tables(&[comparison_rows(&found, names)], TableFormat::Csv)?,
-        format => print_tables(&comparison_tables(&found, names), format)?,
+        TableFormat::Json => print_data(&json_of(&comparisons)?)?,
+        TableFormat::Csv => print_tables(&[comparison_rows(&comparisons, names)], TableFormat::Csv)?,
+        format => print_tables(&comparison_tables(&comparisons, names), format)?,
     }
-    let regressed: Vec<&StudyComparison> = found.iter().filter(|one| one.is_regression()).collect();
-    say!("{} of {} studies got worse", regressed.len(), found.len());
+    let regressed: Vec<&StudyComparison> =
+        comparisons.iter().filter(|comparison| comparison.is_regression()).collect();
+    say!("{} of {} studies got worse", regressed.len(), comparisons.len());
     Ok(if regressed.is_empty() { Exit::Pass } else { Exit::VerdictFailed })
 }
 
@@ -85,7 +86,7 @@ fn what_of(named: &str) -> String {
 fn states_of_commands(commands: [&str; 2], arguments: &Arguments) -> anyhow::Result<[State; 2]> {
     let [named] = arguments.studies.as_slice() else {
         return Err(Ended::usage(
-            "`--commands` takes one study file, whose `[[solver]]` the commands stand for",
+            "`--commands` takes one study file: the commands replace that of its `[[solver]]`",
         ));
     };
     let named = [PathBuf::from(named)];

@@ -13,7 +13,7 @@ use oedometer_scenes::SCENES;
 /// Arguments of `completions`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Shell
+    /// Shell that the completions are for
     shell: Shell,
 }
 

@@ -112,7 +112,7 @@ impl Truncation {
     }
 
     /// As a line of text.
-    fn told(&self) -> String {
+    fn sentence(&self) -> String {
         let Self { time_factor, terms, tail_bound, round_off, seconds, settlement } = self;
         let seconds = seconds.map_or(String::new(), |seconds| format!("t = {seconds:.6e} s, "));
         let terms = count_of(*terms, "term", "terms");
@@ -278,7 +278,7 @@ fn print(
     }
     print_data(&rows_csv(rows)?)?;
     for of in accuracy {
-        say!("{}", of.told());
+        say!("{}", of.sentence());
     }
     if let Some(porosity) = least_porosity {
         say!("the porosity stays above {porosity:.6e}");
@@ -317,7 +317,7 @@ fn time_factors_of(
         _ => return Err(Ended::usage(format!("`{kind}` has no time factor for a degree in closed form"))),
     };
     // By settlement: degree = 1 − B + B U(B T_v); the first 1 − B is there at once.
-    let one = |degree: &f64| {
+    let factor_of = |degree: &f64| {
         // No sign at zero.
         let at_once = 1.0 - storage + 0.0;
         if !(*degree >= at_once && *degree < 1.0) {
@@ -329,7 +329,7 @@ fn time_factors_of(
         let drained = (degree - (1.0 - storage)) / storage;
         Ok(consolidation::time_factor_for_degree(drained)? / storage)
     };
-    degrees.iter().map(one).collect()
+    degrees.iter().map(factor_of).collect()
 }
 
 /// The rows as CSV: the first two columns as requested, results with 17 significant digits.

@@ -28,11 +28,11 @@ pub struct Arguments {
     case: String,
     #[command(flatten)]
     studies: StudyArguments,
-    /// Folder of results; the case is solved if it has no record of this program there. No other program is started
+    /// Results folder; the case is solved if it has no record of this program there. Starts no other program
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     records: PathBuf,
     /// Folder of the golden values
-    /// [default: `golden` beside the study or above; for shipped studies without a file there, those inside the program]
+    /// [default: `golden` beside the study or above; otherwise, for built-in studies, those in the program]
     #[arg(long, value_name = "DIR")]
     golden: Option<PathBuf>,
     /// Output format
@@ -57,13 +57,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         Err(error) => return Err(Ended::with(Exit::Golden, error.to_string())),
     };
     let siblings = study.cases(Tier::Full);
-    let found = explain(&record, &siblings, golden.as_ref(), focus)?;
+    let explained = explain(&record, &siblings, golden.as_ref(), focus)?;
     if arguments.format == TableFormat::Json {
-        print_data(&json_of(&found)?)?;
+        print_data(&json_of(&explained)?)?;
     } else {
-        print_tables(&explanation::tables_of(&record, &found), arguments.format)?;
+        print_tables(&explanation::tables_of(&record, &explained), arguments.format)?;
     }
-    say!("{}: {}", study.name, explanation::golden_sentence(&found));
+    say!("{}: {}", study.name, explanation::golden_sentence(&explained));
     say!("run it again: oedometer run {} --case {}", file.display(), case.hash());
     Ok(Exit::Pass)
 }
@@ -129,7 +129,7 @@ fn record_of(study: &Study, case: &Case, file: &Path, results: &Path) -> anyhow:
     if study.solver_of(case).is_some_and(|solver| !solver.is_given()) {
         return store.kept(case).ok_or_else(|| {
             let reason = format!(
-                "there is no record of `{}` in {}, which `check` does not write, and `explain` starts no solver: first \
+                "there is no record of `{}` in {} (`check` writes none), and `explain` starts no solver: first run \
                  `oedometer run {} --case {} --allow-solvers`",
                 case.label(),
                 store.folder().display(),

@@ -38,7 +38,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         say!("{note}");
     }
     if notes.len() > MOST_NOTES {
-        say!("{} more files are passed over", notes.len() - MOST_NOTES);
+        say!("{} more files are skipped", notes.len() - MOST_NOTES);
     }
     if lines.is_empty() {
         let what = format!("no commit has golden values of these studies in {folder}/");

@@ -15,10 +15,10 @@ use std::fmt::Write;
 /// Arguments of `list`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Explain a method or a scene in words, or print the file of a shipped study
-    #[arg(long, value_name = "METHOD|STUDY")]
+    /// Explain a method or a benchmark problem, or print the file of a built-in study
+    #[arg(long, value_name = "NAME")]
     show: Option<String>,
-    /// Print all methods, also those outside the race
+    /// List all methods, including those that the report does not compare
     #[arg(long, conflicts_with = "show")]
     all: bool,
 }
@@ -29,7 +29,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         return show(name);
     }
     let mut out = String::new();
-    writeln!(out, "scenes")?;
+    writeln!(out, "benchmark problems (scenes)")?;
     for scene in SCENES {
         writeln!(out, "  {:<26} {}", scene.name, scene.summary)?;
     }
@@ -52,11 +52,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     for kind in ReferenceKind::ALL {
         writeln!(out, "  {}", kind.name())?;
     }
-    writeln!(out, "exact problems without a solver")?;
+    writeln!(out, "exact solutions only, without a solver here")?;
     for problem in ShelfProblem::ALL {
         writeln!(out, "  {problem}")?;
     }
-    writeln!(out, "shipped studies")?;
+    writeln!(out, "built-in studies")?;
     for (name, title) in shipped_titles() {
         writeln!(out, "  {name:<26} {title}")?;
     }
@@ -83,7 +83,7 @@ fn show(name: &str) -> anyhow::Result<Exit> {
     let near = nearest(name, names.iter().map(String::as_str));
     let help =
         near.map_or("`oedometer list` names them".to_owned(), |near| format!("did you mean `{near}`?"));
-    Err(Ended::usage(format!("no method, scene or built-in study is called `{name}`: {help}")))
+    Err(Ended::usage(format!("no method, problem or built-in study is called `{name}`: {help}")))
 }
 
 /// A scene in words, with its exact solutions, and how to write it in a study.

@@ -23,15 +23,15 @@ const MOST_HOLES: usize = 10;
 /// Arguments of `merge`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study files (`*.toml`) and folders of results; without study files, those of the project and the shipped
-    /// ones with records in the folders
+    /// Study files (`*.toml`) and results folders; without study files, those of the project and the built-in ones
+    /// with records in the folders
     #[arg(required = true, value_name = "STUDY.toml|DIR")]
     inputs: Vec<PathBuf>,
     /// Folder for the merged results
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     out: PathBuf,
-    /// Tier of the required cases
-    #[arg(long, value_enum, default_value_t = Tier::Full)]
+    /// Test level of the required cases
+    #[arg(long, alias = "test-level", value_enum, default_value_t = Tier::Full)]
     tier: Tier,
 }
 
@@ -45,7 +45,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     let files = if files.is_empty() { known_to(&folders) } else { files };
     if files.is_empty() {
-        let why = "the folders have no results of a study of this project or of a shipped one";
+        let why = "the folders have no results of a study of this project or of a built-in one";
         return Err(Ended::with(Exit::NothingSelected, why));
     }
     let studies = load(&files)?;
@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     for (study, origins) in studies.iter().zip(&origins) {
         if let Some(differences) = origins.main().and_then(|main| origins.differences_from(main)) {
             say!(
-                "{}: records of several builds of one program, whose values are the same: {differences}",
+                "{}: the records come from several builds of one program and have the same values: {differences}",
                 study.name
             );
         }
@@ -147,16 +147,19 @@ fn bring(study: &Study, case: &Case, target: &RecordStore, others: &[RecordStore
         return Ok(target.has(case));
     }
     let kept = target.kept(case);
-    let mut found = kept.clone().map(|record| (record, target));
+    let mut merged = kept.clone().map(|record| (record, target));
     for store in having {
         let Some(other) = store.kept(case) else { continue };
-        let Some((record, from)) = &mut found else {
-            found = Some((other, store));
+        let Some((record, from)) = &mut merged else {
+            merged = Some((other, store));
             continue;
         };
         // Builds of one program differ in the time they take and in nothing else.
-        let values =
-            |one: &Record| Record { wall: Vec::new(), provenance: record.provenance.clone(), ..one.clone() };
+        let values = |kept: &Record| Record {
+            wall: Vec::new(),
+            provenance: record.provenance.clone(),
+            ..kept.clone()
+        };
         if values(record) != values(&other) {
             return Err(Ended::with(
                 Exit::IncompleteMerge,
@@ -174,7 +177,7 @@ fn bring(study: &Study, case: &Case, target: &RecordStore, others: &[RecordStore
             add_wall(&mut record.wall, other.wall);
         }
     }
-    let Some((record, _)) = found else { return Ok(false) };
+    let Some((record, _)) = merged else { return Ok(false) };
     if kept.as_ref() != Some(&record) {
         target.write(&record)?;
     }
@@ -186,7 +189,7 @@ fn bring(study: &Study, case: &Case, target: &RecordStore, others: &[RecordStore
 fn add_wall(wall: &mut Vec<WallSample>, others: Vec<WallSample>) {
     let mut here = wall.clone();
     for sample in others {
-        match here.iter().position(|one| *one == sample) {
+        match here.iter().position(|known| *known == sample) {
             Some(known) => {
                 here.swap_remove(known);
             }

@@ -27,25 +27,27 @@ const COLUMNS: [&str; 5] = ["study", "case", "estimated_point_updates", "label",
 pub struct Arguments {
     #[command(flatten)]
     studies: StudyArguments,
-    /// Tier of the cases
-    #[arg(long, value_enum, default_value_t = Tier::Full)]
+    /// Test level of the cases
+    #[arg(long, alias = "test-level", value_enum, default_value_t = Tier::Full)]
     tier: Tier,
-    /// Only cases without a finished record in this folder of results
+    /// List only cases without a finished record in this results folder
     #[arg(long, value_name = "DIR")]
     missing: Option<PathBuf>,
-    /// Print a job list instead: one command per line for each share with missing cases, of this many shares
+    /// Print a job list instead: divide the cases into this many shards, and print a command for each shard with missing
+    /// cases
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     tasks: Option<u64>,
     /// Divide the cases by estimated time, the longest first, instead of by hash
     #[arg(long, requires = "tasks")]
     balance: bool,
-    /// Have the commands reuse results of attached solvers that cannot be shown to come from the present program
+    /// Add `--keep-unproven` to the commands: reuse results of attached solvers that cannot be shown to come from the
+    /// present program
     #[arg(long, requires = "tasks")]
     keep_unproven: bool,
-    /// Folder for the results of the commands; by default that of `--missing`
+    /// Results folder of the commands [default: that of `--missing`]
     #[arg(long, value_name = "DIR", requires = "tasks")]
     out: Option<PathBuf>,
-    /// Output format: one line per case, or the case files that attached solvers get
+    /// Output format
     #[arg(long, value_enum, default_value_t = PlanFormat::Csv)]
     format: PlanFormat,
     /// Write the case file of each case into this folder, as HASH/case.json
@@ -58,7 +60,7 @@ pub struct Arguments {
 enum PlanFormat {
     /// One line per case
     Csv,
-    /// A list of the case files
+    /// The case files that attached solvers receive
     Json,
 }
 
@@ -167,7 +169,9 @@ fn seconds_of(studies: &[(&Study, Vec<&Case>)]) -> (usize, f64, f64) {
         cases.iter().map(|case| study.estimated_seconds(case)).collect()
     };
     let all = studies.iter().flat_map(seconds);
-    all.fold((0, 0.0, 0.0), |(count, total, longest), one| (count + 1, total + one, f64::max(longest, one)))
+    all.fold((0, 0.0, 0.0), |(count, total, longest), seconds| {
+        (count + 1, total + seconds, f64::max(longest, seconds))
+    })
 }
 
 #[cfg(test)]

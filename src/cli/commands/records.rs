@@ -47,14 +47,14 @@ impl Row {
 /// Arguments of `records`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Folder of a study's results, like out/terzaghi-mesh
+    /// Results folder of a study, like out/terzaghi-mesh
     #[arg(value_name = "DIR")]
     folder: PathBuf,
     /// Cases to print, by the first digits of their hashes [default: all]
     #[arg(value_name = "HASH")]
     cases: Vec<String>,
-    /// Output format: a list of the cases, or with `json` their whole records, an array where no case is named [default: csv
-    /// for all cases, json for named ones]
+    /// Output format: a list of cases; `json` prints their whole records [default: csv for all cases, json for named
+    /// ones]
     #[arg(long, value_enum, conflicts_with_all = ["profiles", "history"])]
     format: Option<TableFormat>,
     /// Print the fields over the height of every case as CSV

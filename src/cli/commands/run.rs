@@ -22,22 +22,22 @@ use std::path::PathBuf;
 pub struct Arguments {
     #[command(flatten)]
     studies: StudyArguments,
-    /// Folder for the results
+    /// Results folder
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     out: PathBuf,
-    /// Cases at the same time [default: all cores]
+    /// Number of cases that run in parallel [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
-    /// Tier of the cases
-    #[arg(long, value_enum, default_value_t = Tier::Full)]
+    /// Test level of the cases
+    #[arg(long, alias = "test-level", value_enum, default_value_t = Tier::Full)]
     tier: Tier,
-    /// Only this share of the cases, like 2/3
+    /// Run only this shard of the cases, like 2/3
     #[arg(long, value_name = "i/n")]
     shard: Option<String>,
     /// Divide the cases by estimated time, the longest first, instead of by hash
     #[arg(long, requires = "shard")]
     balance: bool,
-    /// Only the case with this hash, or the first digits of it
+    /// Run only the case whose hash begins with these digits
     #[arg(long, value_name = "HASH", conflicts_with_all = ["tier", "shard"])]
     case: Option<String>,
     /// Reuse finished records of the same version and sources, from any build
@@ -46,10 +46,10 @@ pub struct Arguments {
     /// With `--resume`: also reuse results of attached solvers that cannot be shown to come from the present program
     #[arg(long, requires = "resume")]
     keep_unproven: bool,
-    /// Write the tables as STUDY.csv.gz, which pandas reads too
+    /// Write compressed tables, STUDY.csv.gz (pandas reads them)
     #[arg(long)]
     compress: bool,
-    /// Run the cases with a scheduler instead of on this machine
+    /// Run the cases by a scheduler instead of on this machine
     #[arg(long, value_enum, conflicts_with_all = ["case", "shard", "jobs"])]
     engine: Option<Engine>,
     #[command(flatten)]
@@ -61,7 +61,7 @@ pub struct Arguments {
 /// Who runs cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Engine {
-    /// Submit an array of shares and a merge, and follow both
+    /// Submit an array of shards and a merge, and follow both
     Slurm,
 }
 
@@ -120,7 +120,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     match options.shard {
         // A share may be empty: what waits for all of them goes on.
         Some(Shard { index, count, .. }) if all.recorded == 0 && selected.iter().any(is_in_tier) => {
-            say!("share {index} of {count} has no case");
+            say!("shard {index} of {count} has no case");
             Ok(Exit::Pass)
         }
         _ if all.recorded == 0 => Err(Ended::with(
@@ -129,7 +129,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
                 Some(hash) => {
                     format!("no case has a hash that begins with `{hash}`: `oedometer plan` lists them")
                 }
-                None => "no case belongs to this tier and shard".to_owned(),
+                None => "no case is in this test level and shard".to_owned(),
             },
         )),
         _ => Ok(trust::end_with(all, Exit::Pass)),
@@ -150,7 +150,7 @@ pub fn shard_of(typed: &str, parting: Parting) -> anyhow::Result<Shard> {
     match parts {
         Some((index, count)) if (1..=count).contains(&index) => Ok(Shard { index, count, parting }),
         _ => {
-            Err(Ended::usage(format!("`--shard {typed}` is not a share: write i/n with 1 ≤ i ≤ n, like 2/3")))
+            Err(Ended::usage(format!("`--shard {typed}` is not a shard: write i/n with 1 ≤ i ≤ n, like 2/3")))
         }
     }
 }

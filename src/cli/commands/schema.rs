@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 /// Arguments of `schema`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Document
+    /// Document to describe
     #[arg(value_enum, default_value_t = Document::Study)]
     document: Document,
 }
@@ -32,13 +32,13 @@ pub enum Document {
     Study,
     /// The record of a case
     Record,
-    /// The mapping of an external result
+    /// The mapping of another program's result
     Mapping,
-    /// The file that describes a case to another solver
+    /// The case file that an attached solver receives
     Case,
     /// The findings of a report: findings.json beside the front page
     Findings,
-    /// The findings about a study: NAME.findings.json beside its page
+    /// The findings of a study: NAME.findings.json beside its page
     StudyFindings,
 }
 

@@ -31,18 +31,18 @@ use std::{fs, io};
 /// Arguments of `solve`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Scene, like `terzaghi`
+    /// Benchmark problem, like `terzaghi`
     scene: String,
-    /// Method by its name
+    /// Method, as `list` names it
     #[arg(long, default_value = "GC-SRI-patch")]
     method: String,
     /// Time integrator [default: explicit; implicit if explicit would take minutes and no wave requires it]
     #[arg(long)]
     integrator: Option<String>,
-    /// Cells over the height; several meshes, like 5,10,20, are solved one after the other and compared
+    /// Cells over the height; several meshes, like 5,10,20, are compared
     #[arg(long, default_value = "10", value_delimiter = ',', allow_negative_numbers = true)]
     cells: Vec<i64>,
-    /// Points per cell and direction
+    /// Material points per cell and direction
     #[arg(long, default_value_t = 2, allow_negative_numbers = true)]
     points_per_cell: i64,
     /// Step rule: stable=0.8, courant=0.5, seconds=1e-6, growth=0.05 or tolerance=1e-4 [default:
@@ -55,7 +55,7 @@ pub struct Arguments {
     /// mapping beside it
     #[arg(long, value_name = "DIR")]
     fields: Option<PathBuf>,
-    /// Use the point-wise step even where the assembled step gives the same
+    /// Use the point-wise step even where the assembled one gives the same result
     #[arg(long)]
     point_wise: bool,
     /// Output format
@@ -193,7 +193,7 @@ fn tell_of_long(study: &Study) {
 fn study_of(arguments: &Arguments) -> anyhow::Result<Study> {
     let mut lines = StudyLines::of("solve", &arguments.scene, "the scene's name")?;
     lines.give_outputs(&arguments.outputs)?;
-    lines.refuse_without_effect(&[("task", "`oedometer stability` looks for critical steps"), TIMING])?;
+    lines.refuse_without_effect(&[("task", "`oedometer stability` finds critical steps"), TIMING])?;
     for (key, option) in OWN_OPTIONS {
         if lines.has(key) || lines.has(&format!("sweep.{key}")) {
             return Err(Ended::usage(format!("`{key}` has a separate option: {option}")));

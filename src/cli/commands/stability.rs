@@ -18,18 +18,18 @@ const AGREEMENT: f64 = 0.02;
 /// Arguments of `stability`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Scene, like `terzaghi`
+    /// Benchmark problem, like `terzaghi`
     scene: String,
-    /// Methods by name, comma-separated
+    /// Methods, comma-separated
     #[arg(long, default_value = "GC-SRI-patch", value_name = "LIST")]
     method: String,
-    /// Numbers of cells over the height, comma-separated
+    /// Cells over the height, comma-separated
     #[arg(long, default_value = "8", value_name = "LIST")]
     cells: String,
-    /// Numbers of points per cell, comma-separated
+    /// Material points per cell and direction, comma-separated
     #[arg(long, default_value = "2", value_name = "LIST")]
     points_per_cell: String,
-    /// Time factor at which the runs near the limit end; at most a million steps
+    /// Time factor at which the observed runs end, after at most a million steps
     #[arg(long, default_value_t = 0.05)]
     time_factor: f64,
     #[command(flatten)]
@@ -95,8 +95,8 @@ fn end_of(records: &[Record]) -> anyhow::Result<Exit> {
     Ok(if agree { Exit::Pass } else { Exit::VerdictFailed })
 }
 
-fn agrees(found: &CriticalStep) -> bool {
-    found.deviation().is_some_and(|deviation| deviation.abs() <= AGREEMENT) && found.probes_agree()
+fn agrees(critical: &CriticalStep) -> bool {
+    critical.deviation().is_some_and(|deviation| deviation.abs() <= AGREEMENT) && critical.probes_agree()
 }
 
 #[derive(serde::Serialize)]
@@ -140,18 +140,18 @@ const COLUMNS: [&str; 13] = [
 
 fn rows_of(record: &Record) -> Vec<Vec<String>> {
     let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:e}"));
-    let Some(found) = &record.stability else { return Vec::new() };
+    let Some(critical) = &record.stability else { return Vec::new() };
     let row = |probe: &Probe| {
         let failure = probe.failure.as_ref();
         vec![
             record.case.method.to_string(),
             record.case.cells.to_string(),
             record.case.points_per_cell.to_string(),
-            format!("{:e}", found.predicted),
-            number(found.observed),
-            format!("{:e}", found.wave_limit),
-            format!("{:e}", found.drag_limit),
-            format!("{:e}", found.combined_limit),
+            format!("{:e}", critical.predicted),
+            number(critical.observed),
+            format!("{:e}", critical.wave_limit),
+            format!("{:e}", critical.drag_limit),
+            format!("{:e}", critical.combined_limit),
             probe.share.to_string(),
             failure.map_or("ok", |failure| failure.kind.name()).to_owned(),
             probe.steps.to_string(),
@@ -159,7 +159,7 @@ fn rows_of(record: &Record) -> Vec<Vec<String>> {
             number(failure.and_then(|failure| failure.growth)),
         ]
     };
-    found.probes.iter().map(row).collect()
+    critical.probes.iter().map(row).collect()
 }
 
 #[cfg(test)]

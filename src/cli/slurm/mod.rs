@@ -32,28 +32,28 @@ const JOB: &str = "job";
 /// How to run on a cluster.
 #[derive(Debug, clap::Args)]
 pub struct ClusterArguments {
-    /// Number of shares, each a task of the array
+    /// Number of shards, each a task of the array
     #[arg(long, value_name = "N", default_value_t = 16, requires = "engine", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     tasks: u64,
     /// Partition of the cluster
     #[arg(long, value_name = "NAME", requires = "engine")]
     partition: Option<String>,
-    /// Longest time of a task, as Slurm writes it: minutes, or hours:minutes:seconds
+    /// Time limit of a task, in the format of Slurm: minutes, or hours:minutes:seconds
     #[arg(long, value_name = "TIME", requires = "engine")]
     time: Option<String>,
-    /// Cores of a task
+    /// Cores per task
     #[arg(long, value_name = "N", default_value_t = 1, requires = "engine", value_parser = clap::value_parser!(u64).range(1..=1024))]
     cores: u64,
-    /// A further option of sbatch, like --sbatch=--account=soil
+    /// Another option for sbatch, like --sbatch=--account=soil
     #[arg(long, value_name = "OPTION", requires = "engine", allow_hyphen_values = true)]
     sbatch: Vec<String>,
-    /// Submissions of a share with missing results, including the first
+    /// How often a shard with missing results is submitted at most
     #[arg(long, value_name = "N", default_value_t = 3, requires = "engine", value_parser = clap::value_parser!(u64).range(1..=100))]
     attempts: u64,
-    /// Submit and do not follow
+    /// Submit, and do not wait for the results
     #[arg(long, requires = "engine")]
     detach: bool,
-    /// Print the scripts and the commands that would submit them, and do nothing
+    /// Print the scripts and the commands that would submit them; submit nothing
     #[arg(long, requires = "engine")]
     dry_run: bool,
 }
@@ -101,7 +101,7 @@ pub fn run(
         }
         let jobs = match under_way.take() {
             Some(jobs) => {
-                say!("{}: job {} is already submitted, and is followed", campaign.name, jobs.array);
+                say!("{}: job {} is already submitted; following it", campaign.name, jobs.array);
                 jobs
             }
             None if attempt == arguments.attempts => return Ok(campaign.given_up(attempt, files)),
@@ -152,12 +152,12 @@ impl<'a> Campaign<'a> {
         let starts_solvers = studies.iter().any(|(study, _)| !study.solvers.is_empty());
         let count: usize = studies.iter().map(|(_, cases)| cases.len()).sum();
         if count == 0 {
-            return Err(Ended::with(Exit::NothingSelected, "no case belongs to this tier"));
+            return Err(Ended::with(Exit::NothingSelected, "no case is in this test level"));
         }
         let most = most_tasks()?;
         if arguments.tasks.min(count as u64) > most {
             say!(
-                "this Slurm takes at most {most} tasks per array: the cases are divided into as many shares"
+                "this Slurm accepts at most {most} tasks per array: the cases are divided into as many shards"
             );
         }
         let list = JobList {

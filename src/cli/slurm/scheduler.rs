@@ -61,7 +61,7 @@ impl Job {
     /// # Errors
     /// When Slurm has not answered for long.
     pub fn follow(&self, done: impl Fn() -> usize, all: usize) -> anyhow::Result<bool> {
-        let (mut pause, mut refusals, mut told) = (FIRST, 0, String::new());
+        let (mut pause, mut refusals, mut reported) = (FIRST, 0, String::new());
         loop {
             let tasks = tasks_of(&self.array).and_then(|array| Ok((array, tasks_of(&self.merge)?)));
             let (array, merge) = match tasks {
@@ -75,18 +75,18 @@ impl Job {
             };
             refusals = 0;
             if (array, merge) == (Tasks::default(), Tasks::default()) {
-                let told = called("scontrol --oneliner show job", &[&self.array]);
-                return Ok(told.is_ok_and(|told| told.contains("JobState=CANCELLED")));
+                let reported = called("scontrol --oneliner show job", &[&self.array]);
+                return Ok(reported.is_ok_and(|reported| reported.contains("JobState=CANCELLED")));
             }
             let work = match array {
                 Tasks { running: 0, waiting: 0 } => "merging".to_owned(),
-                Tasks { running, waiting: 0 } => format!("{running} tasks at work"),
+                Tasks { running, waiting: 0 } => format!("{running} tasks running"),
                 Tasks { running, .. } => format!("{running} tasks running, others waiting"),
             };
             let line = format!("job {}: {} of {all} cases, {work}", self.array, done());
-            if line != told {
+            if line != reported {
                 say!("{line}");
-                told = line;
+                reported = line;
             }
             sleep(pause);
             pause = (pause * 3 / 2).min(LONGEST);
@@ -99,7 +99,7 @@ fn called(command: &str, more: &[&str]) -> anyhow::Result<String> {
     let mut words = command.split(' ');
     let program = words.next().unwrap_or_default();
     let output = Command::new(program).args(words).args(more).output().map_err(|error| {
-        Ended::usage(format!("cannot start {program}: {error}; is this a machine of a Slurm cluster?"))
+        Ended::usage(format!("cannot start {program}: {error}; is this machine part of a Slurm cluster?"))
     })?;
     if output.status.success() {
         return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
@@ -114,9 +114,9 @@ fn called(command: &str, more: &[&str]) -> anyhow::Result<String> {
 /// When Slurm is not there or refuses.
 pub fn submit(words: &[String]) -> anyhow::Result<String> {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let told = called("sbatch", &words)?;
+    let answer = called("sbatch", &words)?;
     // With several clusters the name of one stands behind the number.
-    Ok(told.trim().split(';').next().unwrap_or_default().to_owned())
+    Ok(answer.trim().split(';').next().unwrap_or_default().to_owned())
 }
 
 /// Takes back what was submitted, as far as Slurm still knows it.
@@ -129,12 +129,12 @@ pub fn cancel(job: &str) {
 /// # Errors
 /// When Slurm takes no arrays.
 pub fn most_tasks() -> anyhow::Result<u64> {
-    let told = called("scontrol show config", &[]).unwrap_or_default();
-    match array_size_in(&told).unwrap_or(DEFAULT_ARRAY_SIZE) {
+    let settings = called("scontrol show config", &[]).unwrap_or_default();
+    match array_size_in(&settings).unwrap_or(DEFAULT_ARRAY_SIZE) {
         size @ (0 | 1) => Err(Ended::with(
             Exit::CaseFailed,
             format!(
-                "this Slurm takes no arrays (MaxArraySize={size}): `oedometer plan --tasks` writes a job list"
+                "this Slurm accepts no arrays (MaxArraySize={size}): `oedometer plan --tasks` writes a job list"
             ),
         )),
         // The largest number of a task is one less than the size.
@@ -143,8 +143,8 @@ pub fn most_tasks() -> anyhow::Result<u64> {
 }
 
 /// The size among the lines of a configuration, as `MaxArraySize            = 1001`.
-fn array_size_in(told: &str) -> Option<u64> {
-    let mut pairs = told.lines().filter_map(|line| line.split_once('='));
+fn array_size_in(settings: &str) -> Option<u64> {
+    let mut pairs = settings.lines().filter_map(|line| line.split_once('='));
     pairs.find(|(name, _)| name.trim() == "MaxArraySize")?.1.trim().parse().ok()
 }
 
@@ -152,7 +152,7 @@ fn array_size_in(told: &str) -> Option<u64> {
 fn tasks_of(job: &str) -> anyhow::Result<Tasks> {
     match called("squeue --noheader --format=%T", &[&format!("--jobs={job}")]) {
         Err(error) if error.to_string().contains("Invalid job id") => Ok(Tasks::default()),
-        told => Ok(counted(&told?)),
+        answer => Ok(counted(&answer?)),
     }
 }
 
@@ -207,8 +207,8 @@ impl Scripts {
         ];
         of_array.extend(arguments.time.iter().map(|time| format!("--time={time}")));
         let array = format!(
-            "{}# One share of {}. It takes up what is finished: killed, requeued or submitted again it goes on, and\n\
-             # told to end by SIGTERM it finishes or drops the cases at work and leaves the rest.\n\
+            "{}# One shard of {}. It reuses finished cases, so it continues after a kill, a requeue or another submission.\n\
+             # On SIGTERM it finishes or drops running cases and starts no others.\n\
              exec {} --jobs \"${{SLURM_CPUS_PER_TASK:-1}}\"\n",
             head(name, of_array),
             list.tasks,

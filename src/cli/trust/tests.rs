@@ -144,12 +144,12 @@ fn what_would_be_started_is_told_with_its_folder_and_without_what_steers_a_termi
     fs::write(folder.path().join("adapter.sh"), "true").expect("a file");
     let mut study = study(folder.path(), "", "\"toy\"");
     let at = study.solvers[0].folder.display().to_string();
-    assert_eq!(told(&starting(&study)), format!("`sh adapter.sh` in {at}"));
+    assert_eq!(commands_of(&starting(&study)), format!("`sh adapter.sh` in {at}"));
     study.solvers[0].command[1] = "a\u{1b}[2J".to_owned();
-    assert_eq!(told(&starting(&study)), format!("`sh a\\u{{1b}}[2J` in {at}"));
+    assert_eq!(commands_of(&starting(&study)), format!("`sh a\\u{{1b}}[2J` in {at}"));
     study.solvers[0].command[1] = "x".repeat(400);
     let long = format!("`sh {}` in {at}", "x".repeat(297));
-    assert_eq!(told(&starting(&study)), long);
+    assert_eq!(commands_of(&starting(&study)), long);
     let twice = [&study.solvers[0], &study.solvers[0]];
-    assert_eq!(told(&twice), format!("{long} and {long}"));
+    assert_eq!(commands_of(&twice), format!("{long} and {long}"));
 }

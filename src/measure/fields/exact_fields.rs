@@ -140,7 +140,7 @@ impl<T: Copy + Send> ByHeight<T> {
 
     /// The value at one of the heights.
     fn at(&self, height: f64) -> T {
-        self.values[self.heights.partition_point(|one| one.total_cmp(&height).is_lt())]
+        self.values[self.heights.partition_point(|known| known.total_cmp(&height).is_lt())]
     }
 }
 

@@ -95,7 +95,7 @@ pub fn largest_contribution(computed: &[f64], exact: &[f64], volumes: &[f64]) ->
     }
     let (index, weight) = weights()
         .enumerate()
-        .reduce(|most, one| if one.1.total_cmp(&most.1).is_gt() { one } else { most })?;
+        .reduce(|most, next| if next.1.total_cmp(&most.1).is_gt() { next } else { most })?;
     Some(Contribution { index, error: computed[index] - exact[index], share: weight / total })
 }
 

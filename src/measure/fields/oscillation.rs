@@ -146,11 +146,11 @@ impl PlaneField {
 fn exact_pressure(record: &Record, time_factor: f64, points: &Samples) -> Result<Arc<Vec<f64>>, ExactError> {
     static KNOWN: Known<Arc<Vec<f64>>> = LazyLock::new(Mutex::default);
     let case = &record.case;
-    let own = case.scene.references[0].kind.for_soil(&case.material);
+    let kind = case.scene.references[0].kind.for_soil(&case.material);
     let lattice = format!("{} {} {}", case.cells, case.points_per_cell, points.pressure.len());
-    let key = key_of(case, own, &[time_factor]) + &lattice;
+    let key = key_of(case, kind, &[time_factor]) + &lattice;
     known_or(&KNOWN, key, || {
-        let reference = known_reference(case, own, &[time_factor])?;
+        let reference = known_reference(case, kind, &[time_factor])?;
         Ok(Arc::new(exact_samples(case, &reference, time_factor, points)?.pressure))
     })
 }

@@ -133,8 +133,10 @@ pub fn columns_csv() -> Result<String, csv::Error> {
     let mut rows = vec![["table", "column", "unit", "meaning"]];
     for name in tidy::columns() {
         let input = KEYS.iter().find(|key| key.name == name).map(|key| (key.unit, key.meaning));
-        let other =
-            TIDY_COLUMNS.iter().find(|(own, _, _)| *own == name).map(|(_, unit, meaning)| (*unit, *meaning));
+        let other = TIDY_COLUMNS
+            .iter()
+            .find(|(column, _, _)| *column == name)
+            .map(|(_, unit, meaning)| (*unit, *meaning));
         let (unit, meaning) = input.or(other).unwrap_or(match name {
             "scene" => ("", "physical problem"),
             _ => ("", "solve or stability"),

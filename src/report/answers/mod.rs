@@ -68,7 +68,7 @@ impl Making {
         let left_out = match self.left_out {
             0 => String::new(),
             cases => format!(
-                " {} of the full tier not run; `oedometer report --tier full` runs {}.",
+                " {} of the test level `full` not run; `oedometer report --tier full` runs {}.",
                 count_of(cases, "case", "cases"),
                 if cases == 1 { "it" } else { "them" }
             ),
@@ -357,7 +357,7 @@ mod tests {
         );
         let changed = format!("oedometer 1 · commit `f0` with changes, sources `abc` {end}");
         assert_eq!(told(&[with("1", "f0", true)], &making), changed);
-        let more = " 1 case of the full tier not run; `oedometer report --tier full` runs it.";
+        let more = " 1 case of the test level `full` not run; `oedometer report --tier full` runs it.";
         assert_eq!(told(&[with("1", "f0", true)], &Making { left_out: 1, ..making.clone() }), changed + more);
         let several = told(&[with("1", "", false), with("2", "", false), with("2", "", false)], &making);
         assert!(several.starts_with("oedometer 2 ·"), "{several}");

@@ -112,7 +112,7 @@ fn numbers_section(all: &AllStudies) -> Section {
             )
             .note(
                 "terzaghi: with the water's compressibility; terzaghi-incompressible: the textbook's; \
-                 single-mode: slowest mode, with the water's compressibility",
+                 single-mode: first eigenmode, with the water's compressibility",
             ),
         ),
     ];

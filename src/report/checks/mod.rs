@@ -26,7 +26,8 @@ const TITLES: [&str; 3] = ["expectations not met", "failed cases", "records that
 fn failures_of(check: &StudyCheck) -> [Vec<Failure<'_>>; 3] {
     let unmet = check.judgements.iter().filter(|judgement| !judgement.verdict.pass).map(|judgement| {
         let (class, reason) = (judgement.verdict.classification.class.name(), &judgement.verdict.reason);
-        Failure { line: judgement.line, subject: &judgement.subject, sentence: format!("{class}: {reason}") }
+        let sentence = if reason.starts_with(class) { reason.clone() } else { format!("{class}: {reason}") };
+        Failure { line: judgement.line, subject: &judgement.subject, sentence }
     });
     let of_cases = [&check.failed_cases, &check.unsound].map(|notes| {
         let failure = |note: &'_ crate::judge::study_check::CaseNote| note.sentence.clone();

@@ -1,6 +1,7 @@
 //! Verdicts and golden values of studies, as text in lines that fit a terminal and as Markdown.
 
 use crate::campaign::taken_over::TakenOver;
+use crate::golden::GoldenError;
 use crate::golden::compare::{CaseChange, Change, Difference};
 use crate::judge::study_check::{CheckEnd, StudyCheck};
 use crate::judge::verdict::{Judgement, VerdictOutcome};
@@ -261,18 +262,23 @@ fn headline(check: &StudyCheck) -> String {
             let cases = count_of(check.held_back, "case", "cases");
             return format!("{expectations}: {cases} not run, because their programs need --allow-solvers");
         }
-        Ok(_) if !check.compares_golden => "no golden values, as the study says".to_owned(),
-        Ok(differences) if differences.is_empty() => format!("{} golden values agree", check.agreeing),
-        Ok(differences) => format!("{} golden values agree, {} do not", check.agreeing, differences.len()),
-        Err(error) => error.to_string(),
+        Ok(_) if !check.compares_golden => ", no golden values, as the study says".to_owned(),
+        Ok(differences) if differences.is_empty() => format!(", {} golden values agree", check.agreeing),
+        Ok(differences) => format!(", {} golden values agree, {} do not", check.agreeing, differences.len()),
+        // What fails comes first; values that are wrong are not worth accepting.
+        Err(error) if error.is_missing() && unmet + failed + unsound > 0 => String::new(),
+        Err(GoldenError::Missing(path)) => {
+            format!(", no golden values yet ({}): accept these if they look right", path.display())
+        }
+        Err(error) => format!(", {error}"),
     };
     let count = |count: usize, one: &str, several: &str| match count {
         0 => String::new(),
         count => format!(", {}", count_of(count, one, several)),
     };
     let failed = count(failed, "case failed", "cases failed");
-    let unsound = count(unsound, "complaint about records", "complaints about records");
-    format!("{expectations}{failed}{unsound}, {golden}")
+    let unsound = count(unsound, "record fails its checks", "records fail their checks");
+    format!("{expectations}{failed}{unsound}{golden}")
 }
 
 fn tables_of(check: &StudyCheck) -> Vec<Table> {
@@ -456,9 +462,9 @@ fn difference(one: &Difference) -> String {
 fn case_change(one: &CaseChange) -> String {
     let (mood, word) = judgement_of(one);
     let counts = format!(
-        "{word}: {} times the golden cost, {}, {} fell, {} measured in only one of the two",
+        "{word}: {} times the golden cost, {}, {} fell, {} on one side only",
         number::number(one.cost_ratio),
-        count_of(one.worse, "value grew", "values grew"),
+        count_of(one.worse, "error rose", "errors rose"),
         one.better,
         one.unpaired
     );
@@ -468,7 +474,6 @@ fn case_change(one: &CaseChange) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::golden::GoldenError;
     use crate::golden::compare::Change;
     use crate::golden::measure::key;
     use crate::judge::study_check::CaseNote;
@@ -598,7 +603,7 @@ mod tests {
             (
                 StudyCheck { golden: Err(missing), ..check(0) },
                 "fail",
-                "there is no golden file",
+                "no golden values yet (study.csv): accept these if they look right",
                 Some(accept),
             ),
             (differing(Change::Stale), "fail", "1 do not", Some(accept)),
@@ -613,7 +618,7 @@ mod tests {
             (
                 StudyCheck { unsound: vec![note], ..check(0) },
                 "pass",
-                "1 complaint about records",
+                "1 record fails its checks",
                 Some("oedometer explain \"case\" s.toml"),
             ),
         ] {

@@ -26,7 +26,7 @@ pub fn tables_of(record: &Record, explanation: &Explanation) -> Vec<Table> {
 pub fn golden_sentence(explanation: &Explanation) -> String {
     let values = match (explanation.has_golden, explanation.differences.len(), explanation.agreeing) {
         (false, ..) => "there are no golden values to compare the case with".to_owned(),
-        (true, 0, 0) => "this case has no golden values: it is not in the CI tier".to_owned(),
+        (true, 0, 0) => "this case has no golden values: it is not at the test level `ci`".to_owned(),
         (true, 0, agreeing) => format!("all {agreeing} golden values of the case agree"),
         (true, differing, agreeing) => {
             format!("{differing} values differ from the golden ones, {agreeing} agree")
@@ -69,14 +69,14 @@ fn carriers_table(record: &Record, explanation: &Explanation) -> Table {
     let table = Table::of(
         format!("{}: {}{status}", record.case.scene.name, record.case.label()),
         columns(
-            "quantity | sample | > largest at T_v | > L1 | > L2 | > Linf | > worst at ζ | > its share \
+            "quantity | sample | > largest at T_v | > L1 | > L2 | > Linf | > worst at ζ | > share of squared error \
                  | > computed | > exact",
         ),
         rows,
     )
     .note(format!(
-        "relative errors against {reference}, the largest first; settlement as s/s_exact − 1; share of the \
-             squared L2 error; values in Pa and m"
+        "relative errors against {reference}, the largest first; settlement as s/s_exact − 1; values in \
+             Pa and m"
     ));
     table.notes(attached_notes(record, explanation.outside_run.as_ref()))
 }
@@ -178,7 +178,7 @@ mod tests {
             ("L2", Cell::Error(0.02)),
             ("Linf", Cell::Error(0.03)),
             ("worst at ζ", Cell::Number(0.3)),
-            ("its share", Cell::Percent(0.4)),
+            ("share of squared error", Cell::Percent(0.4)),
             ("computed", Cell::Error(5.0)),
             ("exact", Cell::Error(6.0)),
         ] {
@@ -204,7 +204,7 @@ mod tests {
             })
         };
         assert_eq!(of(false, 0, 0), "there are no golden values to compare the case with");
-        assert_eq!(of(true, 0, 0), "this case has no golden values: it is not in the CI tier");
+        assert_eq!(of(true, 0, 0), "this case has no golden values: it is not at the test level `ci`");
         assert_eq!(of(true, 0, 3), "all 3 golden values of the case agree");
         assert_eq!(of(true, 2, 3), "2 values differ from the golden ones, 3 agree");
         assert_eq!(of(true, 2, 0), "2 values differ from the golden ones, 0 agree");

@@ -17,8 +17,8 @@ pub(crate) fn summary(group: &DifferenceGroup) -> String {
         Change::Moved => "moved".to_owned(),
         Change::Missing => format!("{is} no longer measured"),
         Change::Extra => format!("{is} not in the golden file"),
-        Change::Smaller => format!("{is} smaller where the case got worse elsewhere"),
-        Change::Stale => format!("{is} better: a stale golden"),
+        Change::Smaller => "fell where others of their case rose".to_owned(),
+        Change::Stale => "improved: the golden ones are stale".to_owned(),
     };
     let mut sentence = format!(
         "{} {what}, in {}",
@@ -55,9 +55,9 @@ pub(crate) fn judgement_of(one: &CaseChange) -> (Mood, &'static str) {
         ParetoChange::Same => (Mood::Pass, "same"),
         ParetoChange::Better => (Mood::Note, "better"),
         ParetoChange::Traded if one.is_stale() => (Mood::Note, "cost traded for accuracy"),
-        ParetoChange::Traded => (Mood::Fail, "better here, worse there"),
-        ParetoChange::Dominated => (Mood::Fail, "dominated by its golden values"),
-        ParetoChange::NotComparable => (Mood::Fail, "values without a partner"),
+        ParetoChange::Traded => (Mood::Fail, "mixed"),
+        ParetoChange::Dominated => (Mood::Fail, "worse than its golden values"),
+        ParetoChange::NotComparable => (Mood::Fail, "values on one side only"),
     }
 }
 
@@ -135,10 +135,14 @@ mod tests {
             (Change::Extra, "1 value is not in the golden file, in 1 case", "are not in the golden file"),
             (
                 Change::Smaller,
-                "1 value is smaller where the case got worse elsewhere, in 1 case",
-                "are smaller where the case got worse elsewhere",
+                "1 value fell where others of their case rose, in 1 case",
+                "fell where others of their case rose",
             ),
-            (Change::Stale, "1 value is better: a stale golden, in 1 case", "are better: a stale golden"),
+            (
+                Change::Stale,
+                "1 value improved: the golden ones are stale, in 1 case",
+                "improved: the golden ones are stale",
+            ),
         ] {
             assert_eq!(summary(&group(change, 1, None, Some(1.0))), one);
             let grown = group(change, 2, Some(-2.0), Some(7.0));
@@ -168,9 +172,9 @@ mod tests {
             (case(Better, 0.5, 0, 3), "• better"),
             (case(Traded, 2.0, 0, 3), "• cost traded for accuracy"),
             (case(Traded, 0.5, 4, 0), "• cost traded for accuracy"),
-            (case(Traded, 1.0, 4, 3), "✗ better here, worse there"),
-            (case(Dominated, 3.0, 5, 0), "✗ dominated by its golden values"),
-            (case(NotComparable, 1.0, 0, 0), "✗ values without a partner"),
+            (case(Traded, 1.0, 4, 3), "✗ mixed"),
+            (case(Dominated, 3.0, 5, 0), "✗ worse than its golden values"),
+            (case(NotComparable, 1.0, 0, 0), "✗ values on one side only"),
         ];
         let table = changes_table(&all.each_ref().map(|one| one.0.clone()));
         for (row, (change, words)) in table.rows.iter().zip(&all) {

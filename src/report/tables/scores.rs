@@ -23,7 +23,7 @@ pub fn errors_table(score: &Score, title: &str) -> Table {
     let is_plane = score.worst.iter().any(|worst| worst.x.is_some());
     columns.push(TableColumn::number("worst at ζ"));
     columns.extend(is_plane.then(|| TableColumn::number("and x/L")));
-    columns.extend(table::columns("> its share | > result there | > exact there"));
+    columns.extend(table::columns("> share of squared error | > result there | > exact there"));
     let is_main = |row: &&ErrorRow| matches!(row.norm, Norm::L2 | Norm::Relative);
     let index: HashMap<ErrorKey<'_>, &ErrorRow> =
         score.errors.iter().map(|row| (error_key(row), row)).collect();

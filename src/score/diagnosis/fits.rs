@@ -126,7 +126,7 @@ pub fn worlds(family: &Family, given: &Given<'_>, base: &World, in_units: bool) 
         let common = common_factor(given)
             .filter(|factor| !names.iter().any(|(name, _)| (factor / name - 1.0).abs() <= NAME));
         let load = |factor: f64| {
-            let asked = format!("is the load {} × that of the scene?", shown(rounded(factor)));
+            let asked = format!("is the load {} × that of the problem?", shown(rounded(factor)));
             of(factor).fitted(&said(family, given, factor), asked)
         };
         let is_load = family.kind == Fitted::Load;
@@ -191,9 +191,9 @@ fn minima(value: &dyn Fn(f64) -> f64, [low, high]: [f64; 2], steps: f64) -> Vec<
     let refined = |place: usize| {
         let (at, here) = all[place];
         let around = [(at - step).max(low), (at + step).min(high)];
-        let found = golden_section(around, value);
-        let there = value(found);
-        if there < here { (found, there) } else { (at, here) }
+        let best = golden_section(around, value);
+        let there = value(best);
+        if there < here { (best, there) } else { (at, here) }
     };
     let mut minima: Vec<(f64, f64)> = least.into_iter().take(FOLLOWED).map(refined).collect();
     minima.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -308,7 +308,9 @@ fn generic(given: &Given<'_>, factor: f64) -> String {
     if !given.parameters.soils.is_empty() {
         let stiffness = if given.moves() { "" } else { ", or its stiffness," };
         let factor = shown(rounded(factor));
-        return format!("is k of each layer{stiffness} {factor} × that of the scene, or are the times off?");
+        return format!(
+            "is k of each layer{stiffness} {factor} × that of the problem, or are the times off?"
+        );
     }
     let pair = |number: f64, unit: &str| {
         format!("{} {unit} for {}", short(three_digits(factor * number)), short(three_digits(number)))
@@ -334,8 +336,9 @@ fn moment(base: &World, moment: f64, first: f64) -> Option<World> {
 /// The world of a load that rises evenly, where that of the scene is there at once.
 fn ramp(base: &World, fit: &Fit) -> Option<World> {
     let seconds = short(three_digits(fit.number));
-    let asked =
-        format!("does your load rise over {seconds} s, in a ramp, where that of the scene is there at once?");
+    let asked = format!(
+        "does your load rise over {seconds} s, in a ramp, where that of the problem is there at once?"
+    );
     let said = format!(" under a load that rises over {seconds} s");
     let world = World { ramp: fit.number, ..base.clone() }.fitted(&said, asked);
     (fit.is_open == [false, false]).then_some(world)
@@ -356,9 +359,9 @@ fn stiffness(given: &Given<'_>, base: &World, fit: &Fit, mut names: Vec<(f64, St
                 format!("is {told}{}?", ratio.map_or(String::new(), |told| format!(", as of {told}")))
             }
             None if given.parameters.soils.is_empty() => {
-                let own = given.parameters.soil.oedometric_modulus();
-                let [number, own] = [fit.number * own, own].map(|number| short(rounded(number)));
-                format!("is E_oed {number} Pa for {own}?")
+                let modulus = given.parameters.soil.oedometric_modulus();
+                let [number, modulus] = [fit.number * modulus, modulus].map(|number| short(rounded(number)));
+                format!("is E_oed {number} Pa for {modulus}?")
             }
             None => "is the stiffness of each layer off?".to_owned(),
         };
@@ -390,10 +393,10 @@ fn modulus_told(given: &Given<'_>, ratio: f64) -> Option<(String, Option<String>
     if is_plane || !given.parameters.soils.is_empty() {
         return None;
     }
-    let own = soil.oedometric_modulus();
-    let [number, right] = [ratio * own, own].map(|number| short(rounded(number)));
+    let modulus = soil.oedometric_modulus();
+    let [number, right] = [ratio * modulus, modulus].map(|number| short(rounded(number)));
     // E_oed/E = (1 − ν)/((1 + ν)(1 − 2ν)).
-    let beyond = ratio * own / soil.youngs_modulus - 1.0;
+    let beyond = ratio * modulus / soil.youngs_modulus - 1.0;
     let root = (beyond * beyond + 8.0 * (beyond + 1.0) * beyond).sqrt();
     let poisson = (root - beyond) / (4.0 * (beyond + 1.0));
     let [told, right_one] = [poisson, soil.poissons_ratio].map(|number| short(three_digits(number)));

@@ -444,7 +444,7 @@ pub const FAMILIES: &[Family] = &[
         },
         names: |given| {
             let asked =
-                |factor: f64| format!("is the load {} × that of the scene?", super::fits::shown(factor));
+                |factor: f64| format!("is the load {} × that of the problem?", super::fits::shown(factor));
             let all = [2.0, 0.5, 10.0, 0.1, 1e3, 1e-3, 1e6, 1e-6].map(|factor| (factor, asked(factor)));
             all[..if given.moves() && given.is_stressed() { 8 } else { 2 }].to_vec()
         },

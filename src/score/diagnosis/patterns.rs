@@ -123,7 +123,7 @@ fn checkerboard(column: &Column, exact: &[f64], given: &Given<'_>) -> Option<Rea
     }
     let is_wide = along.iter().any(|number| *number > 0);
     let outputs = column.own_outputs();
-    let mut found: Option<Reading> = None;
+    let mut best_pattern: Option<Reading> = None;
     for (row, both) in (1..=LONGEST).flat_map(|row| [(row, false), (row, is_wide)]) {
         let sign = |place: usize| {
             let across = if both { along[place] / row } else { 0 };
@@ -143,7 +143,7 @@ fn checkerboard(column: &Column, exact: &[f64], given: &Given<'_>) -> Option<Rea
                 after <= ALTERNATES * before
             };
             let left = column.misfit(&held, exact, 1.0, false);
-            if !outputs.iter().all(is_halved) || found.as_ref().is_some_and(|best| best.left <= left) {
+            if !outputs.iter().all(is_halved) || best_pattern.as_ref().is_some_and(|best| best.left <= left) {
                 continue;
             }
             let largest = amplitudes.iter().copied().map(f64::abs).fold(0.0, f64::max);
@@ -154,10 +154,10 @@ fn checkerboard(column: &Column, exact: &[f64], given: &Given<'_>) -> Option<Rea
                 short(percent)
             );
             let asked = "does its interpolation fit that of the displacement (inf-sup), or does it need a stabilisation?";
-            found = Some(reading(begin, asked, [1, 1], left, column));
+            best_pattern = Some(reading(begin, asked, [1, 1], left, column));
         }
     }
-    found
+    best_pattern
 }
 
 /// Numbers of the lines of places on which values stand, counted from 0.

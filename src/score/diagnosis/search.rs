@@ -190,7 +190,7 @@ pub fn explanation(given: &Given<'_>, whole: &Given<'_>, are_all_outputs: bool) 
     // A reading of other times is looked for last: it asks for the exact fields many times.
     if !is_enough(&all) {
         let slow = judged(own.clone(), &given.own, given, Some(whole), true);
-        all.retain(|one| one.world.count > 0);
+        all.retain(|candidate| candidate.world.count > 0);
         all.splice(0..0, slow);
         add(&mut all, Vec::new());
     }
@@ -224,8 +224,13 @@ fn asked_of(explanation: &Explanation) -> String {
     if explanation.world.count > 0 {
         return explanation.world.asked.join(" And ");
     }
-    let mut asked: Vec<&str> =
-        explanation.readings.iter().flatten().flat_map(|one| &one.asked).map(|asked| &**asked).collect();
+    let mut asked: Vec<&str> = explanation
+        .readings
+        .iter()
+        .flatten()
+        .flat_map(|reading| &reading.asked)
+        .map(|asked| &**asked)
+        .collect();
     asked.dedup();
     asked.join(" And ")
 }

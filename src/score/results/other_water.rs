@@ -29,12 +29,12 @@ impl Results<'_> {
     /// # Errors
     /// When the other reference refuses the column.
     pub fn diagnose_water(&mut self, series: &[ScoredSeries]) -> Result<(), ExactError> {
-        let Some(own) = self.comparison.references.first().copied() else { return Ok(()) };
+        let Some(declared) = self.comparison.references.first().copied() else { return Ok(()) };
         let Some(finest) = self.order.last().copied() else { return Ok(()) };
-        if let Some(other) = with_other_water(own)
+        if let Some(other) = with_other_water(declared)
             && self.all[finest].score.diagnosis.is_empty()
         {
-            let sentence = self.explained_by(own, other, series)?;
+            let sentence = self.explained_by(declared, other, series)?;
             self.all[finest].score.diagnosis.extend(sentence);
         }
         Ok(())
@@ -48,10 +48,10 @@ impl Results<'_> {
         series: &[ScoredSeries],
     ) -> Result<Option<String>, ExactError> {
         let converges =
-            |one: &ScoredSeries| matches!(one.classification.class, Class::Asymptotic | Class::Exact);
+            |series: &ScoredSeries| matches!(series.classification.class, Class::Asymptotic | Class::Exact);
         let of_own: Vec<&ScoredSeries> =
-            series.iter().filter(|one| one.measure.reference == own.name()).collect();
-        let open: Vec<&ScoredSeries> = of_own.iter().copied().filter(|one| !converges(one)).collect();
+            series.iter().filter(|series| series.measure.reference == own.name()).collect();
+        let open: Vec<&ScoredSeries> = of_own.iter().copied().filter(|series| !converges(series)).collect();
         if open.is_empty() {
             return Ok(None);
         }
@@ -64,18 +64,19 @@ impl Results<'_> {
         let scores = self.order.iter().map(of_place).collect::<Result<Vec<(usize, Score)>, ExactError>>()?;
         let levels: Vec<(usize, &Score)> = scores.iter().map(|(cells, score)| (*cells, score)).collect();
         let others = series_of(&levels, &self.times, comparison.case.column.height);
-        let finest = |one: &ScoredSeries| one.series.levels().last().and_then(|level| level.error);
-        let explained = open.iter().map(|one| {
+        let finest = |series: &ScoredSeries| series.series.levels().last().and_then(|level| level.error);
+        let explained = open.iter().map(|series| {
             let what = |series: &ScoredSeries| {
                 let of = &series.measure;
                 (series.group, of.quantity, of.sample, of.norm)
             };
-            let twin = others.iter().find(|twin| what(twin) == what(one))?;
-            let is_smaller = finest(twin)? <= LEFT * finest(one)?;
+            let twin = others.iter().find(|twin| what(twin) == what(series))?;
+            let is_smaller = finest(twin)? <= LEFT * finest(series)?;
             (converges(twin) && is_smaller).then_some(twin)
         });
         let Some(explained) = explained.collect::<Option<Vec<&ScoredSeries>>>() else { return Ok(None) };
-        let Some((first, order)) = explained.iter().find_map(|one| Some((one, one.classification.order?)))
+        let Some((first, order)) =
+            explained.iter().find_map(|series| Some((series, series.classification.order?)))
         else {
             return Ok(None);
         };

@@ -135,8 +135,8 @@ impl Checker<'_> {
         {
             self.complain(
                 range.span(),
-                format!("the soil of the scene `{}` moves by itself", subject.scene.name),
-                "a spurious velocity is measured in the scene \"at-rest\"",
+                format!("the soil of the problem `{}` moves by itself", subject.scene.name),
+                "a spurious velocity is measured in the problem \"at-rest\"",
             );
         }
         let selection = self.selection(&table.inputs, subject.scene);
@@ -267,7 +267,10 @@ impl Checker<'_> {
             (
                 oscillation,
                 scene.body.is_plane() && !is_measured,
-                format!("the scene `{}` measures the wiggle of the pressure at the points", scene.name),
+                format!(
+                    "the problem `{}` measures the oscillation of the pressure at the points",
+                    scene.name
+                ),
                 "leave `quantity` and `sample` out, or the oscillation",
             ),
         ] {
@@ -282,7 +285,9 @@ impl Checker<'_> {
         let seed = Case::seed(Task::Solve, scene);
         let values = inputs.0.iter();
         Selection(
-            values.filter_map(|(key, one)| Some((*key, self.input(key, one, key.name, &seed)?))).collect(),
+            values
+                .filter_map(|(key, value)| Some((*key, self.input(key, value, key.name, &seed)?)))
+                .collect(),
         )
     }
 
@@ -297,7 +302,7 @@ impl Checker<'_> {
         let (usual, subject, help) = if is_settlement {
             (
                 (Sample::Surface, Norm::Relative),
-                if quantity == Quantity::Settlement { "a settlement" } else { "a load factor" },
+                if quantity == Quantity::Settlement { "a settlement" } else { "a bearing-capacity factor" },
                 "it is measured at the \"surface\", \"relative\" to the exact one: leave the key out",
             )
         } else {
@@ -464,7 +469,7 @@ impl Checker<'_> {
             let help = match Axis::REFINEMENTS
                 .iter()
                 .filter(|axis| **axis != table.axis)
-                .find(|one| enough(one))
+                .find(|count| enough(count))
             {
                 Some(Axis::TimeStep) => {
                     format!(

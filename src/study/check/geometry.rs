@@ -61,19 +61,19 @@ const UNIT_MISTAKES: [(&str, Range<f64>, &str, &str); 3] = [
 /// What belongs in the table of a kind of body.
 fn contents_of(table: &str) -> &'static str {
     match table {
-        "layer" => "its geometry and load stand in [layer]: length, height, base, load",
+        "layer" => "its geometry and load are in [layer]: length, height, base, load",
         "manufactured" => {
             "its body is the unit square with points on the regular lattice; [manufactured] holds its amplitudes, \
              frequency and pressure"
         }
-        _ => "its geometry and load stand in [column]: height, width, load, dimensions",
+        _ => "its geometry and load are in [column]: height, width, load, dimensions",
     }
 }
 
 impl Checker<'_> {
     /// The inputs of the table that the scene's geometry stands in; other tables of geometry are refused.
     pub(super) fn geometry(&mut self, file: &StudyFile, seed: &Case) -> Vec<(&'static Key, Value)> {
-        let (scene, own) = (seed.scene, seed.scene.body.table());
+        let (scene, table_of_problem) = (seed.scene, seed.scene.body.table());
         let [layer, manufactured] = [&file.layer, &file.manufactured];
         let of_column = file.column.inputs.first_span();
         let strain = file.column.strain.as_ref().map(Placed::span).filter(|_| scene.body == Body::Square);
@@ -85,26 +85,26 @@ impl Checker<'_> {
             ("manufactured", manufactured.as_ref().map(Placed::span)),
             ("points", of_points),
         ] {
-            if let Some(place) = place.filter(|_| table != own) {
+            if let Some(place) = place.filter(|_| table != table_of_problem) {
                 self.complain(
                     place,
-                    format!("the scene `{}` has no [{table}]", scene.name),
-                    contents_of(own),
+                    format!("the problem `{}` has no [{table}]", scene.name),
+                    contents_of(table_of_problem),
                 );
             }
         }
-        match own {
+        match table_of_problem {
             "layer" => layer.as_ref().map_or(Vec::new(), |table| {
                 for (key, typed) in &table.inputs.0 {
                     self.footing_fits(key, typed.span(), scene);
                 }
-                self.inputs(own, &table.inputs, seed)
+                self.inputs(table_of_problem, &table.inputs, seed)
             }),
             "manufactured" => manufactured.as_ref().map_or(Vec::new(), |table| {
                 for (key, typed) in &table.inputs.0 {
                     self.amplitude_fits(key, typed.span(), scene);
                 }
-                self.inputs(own, &table.inputs, seed)
+                self.inputs(table_of_problem, &table.inputs, seed)
             }),
             _ => self.column(&file.column.inputs, seed),
         }
@@ -120,13 +120,13 @@ impl Checker<'_> {
                 "loading_time",
                 !scene.takes("loading_time"),
                 format!("the load of `{name}` acts at once"),
-                "a load that grows belongs to the scenes \"xie-leo\" and \"dynamic-column\"",
+                "a load that grows belongs to the problems \"xie-leo\" and \"dynamic-column\"",
             ),
             (
                 "self_weight",
                 !scene.takes("self_weight"),
                 format!("the soil of `{name}` has no weight"),
-                "self-weight belongs to the scenes \"terzaghi\", \"xie-leo\", \"dynamic-column\" and \"at-rest\"",
+                "self-weight belongs to the problems \"terzaghi\", \"xie-leo\", \"dynamic-column\" and \"at-rest\"",
             ),
             (
                 "self_weight",
@@ -140,13 +140,13 @@ impl Checker<'_> {
                 "drainage",
                 !scene.takes("drainage"),
                 format!("the base of `{name}` is impermeable"),
-                "a column drained at both ends belongs to the scenes \"terzaghi\", \"xie-leo\" and \"layered\"",
+                "a column drained at both ends belongs to the problems \"terzaghi\", \"xie-leo\" and \"layered\"",
             ),
             (
                 "initial_stress",
                 !scene.takes("initial_stress"),
                 format!("the soil of `{name}` has no stress history"),
-                "an initial stress belongs to the scene \"yield-front\"",
+                "an initial stress belongs to the problem \"yield-front\"",
             ),
             (
                 "dimensions",
@@ -185,8 +185,8 @@ impl Checker<'_> {
         if !base.scene.takes("soils") {
             self.complain(
                 whole,
-                format!("the soil of the scene `{}` has no layers", base.scene.name),
-                "layers belong to the scenes \"layered\", of small strain, and \"xie-leo\", of large",
+                format!("the soil of the problem `{}` has no layers", base.scene.name),
+                "layers belong to the problems \"layered\", of small strain, and \"xie-leo\", of large",
             );
             return SoilLayers::default();
         }
@@ -215,7 +215,7 @@ impl Checker<'_> {
     /// Complains of a footing's inputs where there is none, and of a load where one is pushed.
     fn footing_fits(&mut self, key: &Key, place: Range<usize>, scene: &'static Scene) {
         let takes_plate = scene.takes("plate_width");
-        let message = || format!("the scene `{}` has no `{}`", scene.name, key.name);
+        let message = || format!("the problem `{}` has no `{}`", scene.name, key.name);
         if takes_plate && key.name == "load" {
             self.complain(
                 place,
@@ -223,14 +223,14 @@ impl Checker<'_> {
                 "the settlement of its plate is prescribed, and the load is the result",
             );
         } else if !takes_plate && ["plate_width", "plate", "undrained"].contains(&key.name) {
-            self.complain(place, message(), "a plate belongs to the scene \"footing\"");
+            self.complain(place, message(), "a plate belongs to the problem \"footing\"");
         }
     }
 
     /// Complains where a motion has no such amplitude.
     fn amplitude_fits(&mut self, key: &Key, place: Range<usize>, scene: &'static Scene) {
         if let Some(why) = scene.refuses_amplitude(key.name) {
-            self.complain(place, format!("the scene `{}` has no `{}`", scene.name, key.name), why);
+            self.complain(place, format!("the problem `{}` has no `{}`", scene.name, key.name), why);
         }
     }
 
@@ -243,7 +243,7 @@ impl Checker<'_> {
             let takes = |table: &str| key.tables.contains(&table);
             let is_geometry = ["column", "layer", "manufactured"].into_iter().any(takes);
             if (scene.body == Body::Square && takes("points")) || (is_geometry && !takes(own)) {
-                let message = format!("the scene `{}` has no `{}`", scene.name, key.name);
+                let message = format!("the problem `{}` has no `{}`", scene.name, key.name);
                 self.complain(list.span(), message, contents_of(own));
             }
         }
@@ -253,13 +253,13 @@ impl Checker<'_> {
     pub(super) fn soil_remembers(&mut self, material: &Inputs, scene: &'static Scene) {
         for key in ["reload_modulus", "preconsolidation", "undrained_strength"] {
             if let Some(place) = material.span(key).filter(|_| !scene.takes(key)) {
-                let message = format!("`{key}` has no effect in the scene `{}`", scene.name);
+                let message = format!("`{key}` has no effect in the problem `{}`", scene.name);
                 let own =
                     SCENES.into_iter().filter(|own| own.takes(key)).map(|own| format!("\"{}\"", own.name));
                 self.complain(
                     place,
                     message,
-                    format!("it belongs to the scene {}", own.collect::<Vec<_>>().join(" or ")),
+                    format!("it belongs to the problem {}", own.collect::<Vec<_>>().join(" or ")),
                 );
             }
         }
@@ -298,7 +298,7 @@ impl Checker<'_> {
             )
         } else if !seed.scene.is_loaded() {
             (
-                format!("no load acts in the scene `{}`: it cannot strain it", seed.scene.name),
+                format!("no load acts in the problem `{}`: it cannot strain it", seed.scene.name),
                 "leave `strain` out",
             )
         } else if **typed > 0.0 && **typed < 1.0 {
@@ -431,7 +431,7 @@ impl Checker<'_> {
         let diagnostic = Diagnostic::at(
             place.unwrap_or_else(|| file.scene.span()),
             format!(
-                "the load strains the column by m_vl q = {strain:.2e}: this scene is small-strain theory, and real soil \
+                "the load strains the column by m_vl q = {strain:.2e}: this problem is small-strain theory, and real soil \
                  departs from it by about that fraction"
             ),
             "the errors are taken against small-strain theory; `xie-leo` is the problem at large strain",

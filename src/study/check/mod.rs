@@ -210,9 +210,9 @@ impl Checker<'_> {
         {
             self.complain(
                 typed.span(),
-                "what acts on a manufactured motion hides what grows by itself: its critical step is predicted and \
+                "the body forces of a manufactured solution hide what grows by itself: its critical step is predicted and \
                  not observed",
-                "leave `task` out, or take another scene",
+                "leave `task` out, or take another problem",
             );
         }
         self.attach_solvers(&file, case_seconds);
@@ -379,8 +379,8 @@ impl Checker<'_> {
         scene: &'static Scene,
         column: &Column,
     ) -> Vec<ReferenceKind> {
-        let own = scene.references_of(column);
-        let Some(list) = &table.references else { return own };
+        let of_problem = scene.references_of(column);
+        let Some(list) = &table.references else { return of_problem };
         let names: Vec<&str> = scene.reference_kinds().iter().map(|kind| kind.name()).collect();
         let mut references = Vec::new();
         for typed in list.iter() {
@@ -388,17 +388,17 @@ impl Checker<'_> {
             let kind = scene.references[index].kind;
             if references.contains(&kind) {
                 self.complain(typed.span(), format!("\"{kind}\" is listed twice"), "leave one of them out");
-            } else if own.contains(&kind) {
+            } else if of_problem.contains(&kind) {
                 references.push(kind);
             } else {
                 self.complain(
                     typed.span(),
                     format!("the load of `{kind}` acts at once, and this column's grows"),
-                    format!("compare it with \"{}\"", own[0]),
+                    format!("compare it with \"{}\"", of_problem[0]),
                 );
             }
         }
-        references.sort_by_key(|kind| own.iter().position(|one| one == kind));
+        references.sort_by_key(|kind| of_problem.iter().position(|known| known == kind));
         references
     }
 }

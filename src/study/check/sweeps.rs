@@ -7,7 +7,7 @@ use crate::case::{Case, Key, PlannedCase, Task, Value};
 use crate::study::Purpose;
 use crate::study::check::{Checker, Common};
 use crate::study::diagnostic::Diagnostic;
-use crate::study::file::{StudyFile, SweepTable};
+use crate::study::file::{COMMAND_LINE, StudyFile, SweepTable};
 use crate::study::inputs::{One, TypedInput};
 use crate::study::reading::Placed;
 use oedometer_problem::integrator::IntegratorKind;
@@ -34,8 +34,8 @@ impl Checker<'_> {
         table: &SweepTable,
         mut check: impl FnMut(&mut Self, Option<&'static Contender>),
     ) {
-        let is_race = |one: &One| matches!(&**one, TypedInput::MethodName(name) if name == RACE);
-        if !matches!(table.inputs.list("method"), [one] if is_race(one)) {
+        let is_race = |method: &One| matches!(&**method, TypedInput::MethodName(name) if name == RACE);
+        if !matches!(table.inputs.list("method"), [method] if is_race(method)) {
             check(self, None);
             return;
         }
@@ -92,8 +92,8 @@ impl Checker<'_> {
                 );
             } else if let Some(typed) = table.inputs.typed(key.name) {
                 self.is_filled(key.name, typed.span(), table.inputs.list(key.name).len());
-                let one = |one: &One| self.input(key, one, key.name, &common.seed);
-                let values = table.inputs.list(key.name).iter().filter_map(one).collect();
+                let value = |value: &One| self.input(key, value, key.name, &common.seed);
+                let values = table.inputs.list(key.name).iter().filter_map(value).collect();
                 keys.push(SweptKey { key, values });
             } else if let Some((_, value)) = common.given.iter().find(|(given, _)| *given == key) {
                 // The study's own values stand with what is swept: an integrator would bring its own formulation.
@@ -110,11 +110,13 @@ impl Checker<'_> {
             );
         }
         let sweep = Sweep { keys, path };
-        if let (Some((key, own, first)), Some(path)) = (sweep.uneven_path(), &table.path) {
+        if let (Some((key, length, first)), Some(path)) = (sweep.uneven_path(), &table.path) {
             self.complain(
                 path.span(),
-                format!("the path combines `{key}` with {own} values and an axis with {first}"),
-                "the lists in a path need equal lengths",
+                format!(
+                    "the zipped lists differ in length: `{key}` has {length} values, another has {first}"
+                ),
+                "lists in `path` are combined element by element: give them equal lengths",
             );
         }
         let is_sound = self.diagnostics.len() == before && self.can_be_multiplied_out(start, &sweep);
@@ -144,7 +146,7 @@ impl Checker<'_> {
             start.clone(),
             format!("the sweep has {count}{others}"),
             format!(
-                "a study has at most {MOST_CASES}: shorten its lists, tie axes with `path`, or split it into several"
+                "a study has at most {MOST_CASES}: shorten its lists, zip axes with `path`, or split it into several"
             ),
         );
         false
@@ -250,6 +252,12 @@ impl Checker<'_> {
         let place = sweep.keys.iter().position(|swept| swept.key.name != "method").unwrap_or(0);
         let implicit = IntegratorKind::Implicit.name();
         sweep.keys.insert(place, SweptKey { key, values: vec![Value::Word(implicit)] });
+        if self.source.name == COMMAND_LINE {
+            let note =
+                format!("no --integrator given; using {implicit} (explicit: about {})", duration(explicit));
+            self.warnings.push(format!("note: {note}"));
+            return;
+        }
         self.warn(&Diagnostic::at(
             start.clone(),
             format!(
@@ -327,8 +335,8 @@ impl Sweep {
         };
         let first = length(self.path.first()?);
         self.path.iter().find_map(|name| {
-            let own = length(name);
-            (own != first).then(|| (name.clone(), own, first))
+            let values = length(name);
+            (values != first).then(|| (name.clone(), values, first))
         })
     }
 

@@ -46,8 +46,8 @@ impl Checker<'_> {
 
     /// Every input of a table that the study shares, by the key.
     pub(super) fn inputs(&mut self, table: &str, inputs: &Inputs, seed: &Case) -> Vec<(&'static Key, Value)> {
-        let value = |(key, one): &(&'static Key, One)| {
-            self.input(key, one, &format!("{table}.{}", key.name), seed).map(|value| (*key, value))
+        let value = |(key, typed): &(&'static Key, One)| {
+            self.input(key, typed, &format!("{table}.{}", key.name), seed).map(|value| (*key, value))
         };
         inputs.0.iter().filter_map(value).collect()
     }
@@ -170,7 +170,7 @@ impl Checker<'_> {
             (why, "take \"updated\" or \"total\", or leave the key out")
         } else if method.built_in().is_none() && scene.motion.is_some() {
             (
-                "an external solver does not receive the body forces and the source of a manufactured motion",
+                "an external solver does not receive the body forces and the source of a manufactured solution",
                 "take a method of this program",
             )
         } else if let Some(why) = method.built_in().and_then(|method| scene.refuses_method(method)) {
@@ -224,11 +224,11 @@ impl Checker<'_> {
         if let Some(why) = law.and_then(refused) {
             let fit = Law::ALL.into_iter().filter(|law| refused(*law).is_none());
             let names: Vec<&str> = fit.map(Law::name).collect();
-            self.complain(span, why, format!("the scene `{}` takes {}", scene.name, names.join(", ")));
+            self.complain(span, why, format!("the problem `{}` takes {}", scene.name, names.join(", ")));
         } else if is_chord && scene.motion.is_some() {
             self.complain(
                 span,
-                "the chord mean belongs to a flux out of a drained surface, and a manufactured motion has none",
+                "the chord mean belongs to a flux out of a drained surface, and a manufactured solution has none",
                 "leave it out",
             );
         } else {
@@ -291,8 +291,8 @@ impl Checker<'_> {
                     "it must lie between {least} and {most}, both excluded; the default column has {usual}"
                 ),
             ),
-            Range::Within(least, most, told, help) => {
-                message = told.replace("{}", &value.to_string());
+            Range::Within(least, most, wording, help) => {
+                message = wording.replace("{}", &value.to_string());
                 ((least..=most).contains(&value), help.to_owned())
             }
         };

@@ -273,7 +273,7 @@ fn classified(case: &EvaluableSeries, candidate: &Candidate) -> Option<Classific
     match candidate.second {
         Second::Floor => {
             let reason = format!(
-                "{window}, and over all {levels} levels a floor makes up {percent:.0} % of the finest error"
+                "{window}, and over all {levels} levels an error plateau makes up {percent:.0} % of the finest error"
             );
             Some(case.limited(&reason))
         }

@@ -109,7 +109,7 @@ fn exact(series: &ErrorSeries, context: &Context) -> Option<Classification> {
     (!errors.is_empty() && errors.len() == series.levels().len()).then(|| {
         let largest = short(errors.iter().copied().fold(0.0, f64::max));
         Classification::new(Class::Exact, format!("every error is round-off: the largest is {largest}"))
-            .advise("check that the result is not compared with itself; a harder scene shows an order")
+            .advise("check that the result is not compared with itself; a harder problem shows an order")
     })
 }
 
@@ -131,7 +131,7 @@ fn not_evaluable(series: &ErrorSeries) -> Option<Classification> {
                 [Ok(order)] => format!(" with the order {order:.2} between them"),
                 _ => String::new(),
             };
-            format!("{} levels{between}: a class needs {WINDOW}, two orders to compare", levels.len())
+            format!("{} levels{between}: a class needs {WINDOW}, for two orders", levels.len())
         }
         None => {
             let close = levels.windows(2).find(|pair| pair[0].size < LEAST_RATIO * pair[1].size)?;
@@ -211,7 +211,7 @@ impl EvaluableSeries<'_> {
             let reason =
                 format!("the sign changes on the three finest levels, where no order is defined: {values}");
             Classification::new(Class::PreAsymptotic, reason)
-                .advise("add a finer level: it tells a single passage through zero from an oscillation")
+                .advise("add a finer level: it distinguishes a single zero crossing from an oscillation")
         })
     }
 
@@ -302,7 +302,7 @@ impl EvaluableSeries<'_> {
         let [coarse, first, fine, last] = self.ends();
         if turns > 1 {
             let reason = format!(
-                "the error turns {turns} times between {first} at size {coarse} and {last} at {fine}: orders {}",
+                "the error changes direction {turns} times between {first} at size {coarse} and {last} at {fine}: orders {}",
                 orders(&self.pairs)
             );
             return Some(Classification::new(Class::Oscillatory, reason).advise(LOOK_FOR_NOISE));

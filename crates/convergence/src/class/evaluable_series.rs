@@ -135,12 +135,12 @@ impl<'a> EvaluableSeries<'a> {
             .advise(advice(value, target, limiter, &self.limiters))
     }
 
-    /// A converging error and a floor of opposite sign that cancel at one level.
+    /// A converging error and a plateau of opposite sign that cancel at one level.
     pub fn cancelled(&self, fit: &CancellingFit) -> Classification {
         let target = 0.1 * fit.coefficient * powf(self.finest().0, fit.order);
         let [size, floor] = [fit.cancels_at, fit.floor].map(short);
         let reason = format!(
-            "the error falls, cancels near size {size} and grows again to a floor of {floor} of opposite sign, which"
+            "the error falls, cancels near size {size} and grows again to a plateau of {floor} of opposite sign, which"
         );
         self.over_floor(&reason, Some(fit.order), Some(target), (fit.floor, true))
     }
@@ -155,7 +155,7 @@ impl<'a> EvaluableSeries<'a> {
     pub fn approaching(&self, approach: &Approach) -> Classification {
         let target = 0.1 * (approach.at(self.finest().0) - approach.limit).abs();
         let reason = format!(
-            "{} at order {} towards a limit of {}, and the finest level lies where those before it say: a floor that",
+            "{} at order {} towards a limit of {}, and the finest level lies where those before it say: a plateau that",
             self.first_to_last(),
             order(approach.order),
             short(approach.limit)
@@ -183,14 +183,14 @@ impl<'a> EvaluableSeries<'a> {
         let limiter = identify(height, &self.limiters);
         let suspect = limiter.map_or_else(String::new, |limiter| format!(" ({})", limiter.name));
         let reason = format!(
-            "{reason}; {} levels cannot tell a floor of about {}{suspect} from an order that has not settled",
+            "{reason}; {} levels cannot tell a plateau of about {}{suspect} from an order that has not settled",
             self.points.len(),
             short(height)
         );
         Classification::new(Class::PreAsymptotic, reason).advise(if self.points.len() < FLOOR_LEVELS {
-            "add a finer level: a floor shows on four"
+            "add a finer level: a plateau shows on four"
         } else {
-            "add a finer level: a floor stops the error, a lower order does not"
+            "add a finer level: a plateau stops the error, a lower order does not"
         })
     }
 
@@ -205,7 +205,7 @@ impl<'a> EvaluableSeries<'a> {
         let (size, error) = self.finest();
         let value = fit.map_or(error, |fit| fit.floor);
         let target = fit.map(|fit| 0.1 * fit.coefficient * powf(size, fit.order));
-        let height = if fit.is_some() { "a floor of" } else { "a floor not above" };
+        let height = if fit.is_some() { "a plateau of" } else { "a plateau not above" };
         let reason = format!("{reason}; {height} {}", short(value));
         self.over_floor(&reason, fit.map(|fit| fit.order), target, (value, fit.is_some()))
     }

@@ -60,8 +60,9 @@ fn with_formal(case: &EvaluableSeries, window: &str, formal: f64, coarse: f64, f
         let dying = matches!(bend(), Some(Bend::Higher(terms)) if terms.low_share(case.finest().0) > 0.1);
         if drift.abs() <= SETTLED && !dying {
             let reason = format!("{window}: steady and above the formal {wanted}");
-            return Classification::new(Class::Superconvergent, reason)
-                .advise("check whether the scene is too easy, or the samples lie at superconvergent places");
+            return Classification::new(Class::Superconvergent, reason).advise(
+                "check whether the problem is too easy, or the samples lie at superconvergent points",
+            );
         }
         let why = if drift > 0.0 { "still rising, as when two terms cancel" } else { "still falling" };
         return unsettled(format!("{window}: above the formal {wanted} and {why}"));
@@ -112,7 +113,9 @@ fn governed(case: &EvaluableSeries, bend: &Bend, window: &str) -> Option<Classif
             Some(case.may_be_limited(window, terms.low_coefficient))
         }
         Bend::Floor(_) => {
-            Some(case.limited(&format!("{window}, and a floor makes up {percent:.0} % of the finest error")))
+            Some(case.limited(&format!(
+                "{window}, and an error plateau makes up {percent:.0} % of the finest error"
+            )))
         }
         Bend::Lower(_) => Some(contaminated(
             format!(

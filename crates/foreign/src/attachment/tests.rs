@@ -185,7 +185,7 @@ mod runs {
     fn the_last_words_are_told_and_tell_no_path_of_this_machine() {
         let outcome = run("echo wrong in $PWD/result.csv >&2; exit 1", |_| {});
         let told = outcome.status.failure().expect("it failed").to_string();
-        assert!(told.contains("The last it said: wrong in {out}/result.csv"), "{told}");
+        assert!(told.contains("Its output ended: wrong in {out}/result.csv"), "{told}");
         assert_eq!(outcome.foreign.expect("a program").last_words, ["wrong in {out}/result.csv"]);
     }
 

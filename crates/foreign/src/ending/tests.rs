@@ -246,7 +246,7 @@ fn processes_are_told_that_live_on_or_were_left_behind_and_not_those_that_were_e
     let solver = crate::attachment::tests::solver(std::path::Path::new("/"), &["./theirs", "x"]);
     let solver = ExternalSolver { timeout: 90.0, ..solver };
     let late = "the solver exceeded its 90 s and was killed with everything that it had started";
-    let short = "; it hangs, or `timeout` is too short. The last it said: out";
+    let short = "; it hangs, or `timeout` is too short. Its output ended: out";
     for (ending, lives_on, told) in [
         (Ending::TimedOut, &[][..], format!("timed-out: {late}{short}")),
         (Ending::TimedOut, &[4, 5], format!("timed-out: {late}, except for 4 (p4), 5 (p5), which could not be killed{short}")),
@@ -255,25 +255,25 @@ fn processes_are_told_that_live_on_or_were_left_behind_and_not_those_that_were_e
             Ending::NotStarted(std::io::Error::other("no such file")),
             &[],
             "not-startable: `./theirs` could not be started: no such file; the command in the study is wrong, or the \
-             program is not here. The last it said: out"
+             program is not here. Its output ended: out"
                 .to_owned(),
         ),
         (
             Ending::Ended(ExitStatus::from_raw(9)),
             &[],
-            "killed: signal: 9 (SIGKILL) ended it, which this program did not send; the solver crashed, or memory ran out. The last \
-             it said: out"
+            "killed: signal: 9 (SIGKILL) ended it, which this program did not send; the solver crashed, or memory ran out. \
+             Its output ended: out"
                 .to_owned(),
         ),
         (
             Ending::Ended(ExitStatus::from_raw(78 << 8)),
             &[],
-            "failed: it ended with exit code 78; an error of the solver, or of its adapter. The last it said: out".to_owned(),
+            "failed: it ended with exit code 78; an error of the solver, or of its adapter. Its output ended: out".to_owned(),
         ),
         (
             Ending::Ended(ExitStatus::from_raw(77 << 8)),
             &[],
-            "skipped: it says that it cannot run here (exit code 77). The last it said: out".to_owned(),
+            "skipped: it reports that it cannot run here (exit code 77). Its output ended: out".to_owned(),
         ),
     ] {
         let found = of_process(&run(ending, &[], lives_on), &solver).expect("it failed");
@@ -296,7 +296,7 @@ fn errors_of_a_run_are_repeated_and_its_output_only_where_there_are_none() {
     assert_eq!(kept_words(&plain), ["out"]);
     let wrong = Finished { errors: "1\n2\n3\n4\n5\n".to_owned(), ..plain };
     assert_eq!(kept_words(&wrong), ["1", "2", "3", "4", "5"]);
-    assert_eq!(last_words(&wrong), ". The last it said: 2 / 3 / 4 / 5");
+    assert_eq!(last_words(&wrong), ". Its output ended: 2 / 3 / 4 / 5");
     // What MPI says of a process that ended is not what went wrong.
     let mpi = "Error: matrix is singular\nstep 7\n-----\nMPI_ABORT was invoked on rank 0 in communicator MPI_COMM_WORLD\n\
                with errorcode 1.\nPrimary job  terminated normally, but 1 process returned\na non-zero exit code.\n\
@@ -304,10 +304,7 @@ fn errors_of_a_run_are_repeated_and_its_output_only_where_there_are_none() {
     let crashed = Finished { errors: mpi.to_owned(), ..wrong };
     assert_eq!(kept_words(&crashed)[0], "Error: matrix is singular");
     let told = last_words(&crashed);
-    assert_eq!(
-        told,
-        ". It said first: Error: matrix is singular. The last it said: seven / eight / nine / ten"
-    );
+    assert_eq!(told, ". Its output began: Error: matrix is singular. It ended: seven / eight / nine / ten");
     let python = "Traceback (most recent call last):\n  File \"a.py\", line 1\nValueError: no mesh\nabort(1) on node 0\n";
     let crashed = Finished { errors: python.to_owned(), ..crashed };
     assert_eq!(first_message(&crashed.errors).as_deref(), Some("ValueError: no mesh"));

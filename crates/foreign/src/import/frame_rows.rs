@@ -258,7 +258,7 @@ impl<'a> FrameRows<'a> {
         };
         let on = Some(self.on);
         let array = IDS.iter().filter_map(|name| self.frame.array(name, on)).find(numbers_all)?;
-        notes.push(format!("points told apart by {}", array.name));
+        notes.push(format!("points identified by {}", array.name));
         Some(Source::Array(array, 0))
     }
 
@@ -333,7 +333,7 @@ impl<'a> FrameRows<'a> {
     fn note(&mut self, mut notes: Vec<String>) {
         let path = self.path.display();
         if self.mapping.displacement.is_some() {
-            notes.push("displacement = place less that of the first state".to_owned());
+            notes.push("displacement = position minus that of the first state".to_owned());
         }
         self.notes.push(format!("{path}: {}", notes.join(", ")));
         if self.mapping.rows.corners && self.frame.cells.is_none() {

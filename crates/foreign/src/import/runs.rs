@@ -597,7 +597,7 @@ impl Run {
         let before = self.states.len();
         self.states.retain(is_loaded);
         if self.states.len() < before && !self.states.is_empty() {
-            let note = "the state at t = 0 is left out: its pressure is 0, so the load is not on yet";
+            let note = "the state at t = 0 is left out: its pressure is 0, so the load is not applied yet";
             self.notes.push(note.to_owned());
         }
     }
@@ -618,7 +618,7 @@ impl Run {
             is_weighed |= sample != Sample::Centres && weigh(state, body.height, body.length);
         }
         if is_weighed {
-            let note = "weight = the length that each node stands for, because they do not stand evenly";
+            let note = "weight = the length that each node represents, because they are unevenly spaced";
             self.notes.push(note.to_owned());
         }
     }

@@ -44,10 +44,10 @@ impl SaidUnit {
             Some(size) if (size / own - 1.0).abs() < 1e-12 => Self::AsMapped,
             Some(size) => Self::Factor(
                 size / own,
-                format!("`{name}` is in {unit}, as the file says itself, and not in {word}"),
+                format!("`{name}` is in {unit}, as the file states, and not in {word}"),
             ),
             None => Self::Unfit(format!(
-                "`{name}` is in `{unit}`, as the file says itself, which is no unit that `{}` is read in: it is taken as {word}",
+                "`{name}` is in `{unit}`, as the file states, which is no unit that `{}` is read in: it is taken as {word}",
                 mapping.shown(column).name()
             )),
         }
@@ -88,7 +88,7 @@ mod tests {
         }
         let head = SaidUnit::of(Column::Pressure, "h", "m", &mapping);
         assert!(
-            matches!(head, SaidUnit::Unfit(told) if told.starts_with("`h` is in `m`, as the file says itself"))
+            matches!(head, SaidUnit::Unfit(told) if told.starts_with("`h` is in `m`, as the file states"))
         );
         let names = ["p [kPa]", "u_y(mm)", "p", "sigma[1]", "p (clay)"].map(SaidUnit::in_name);
         assert_eq!(names, [Some("kPa"), Some("mm"), None, None, None]);

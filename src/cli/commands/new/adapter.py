@@ -4,7 +4,7 @@
     adapter.py CASE.json OUT
 
 CASE.json describes the problem (`oedometer schema case` has every key; SI units), OUT is an empty folder for the
-result. The small solver below works: replace `solve` by yours.
+result. The small solver below works: replace `solve` with yours.
 
 Exit code 0: solved. 77: it cannot run here (a package is missing), so the case is skipped. Any other: it failed, and
 the last lines on standard error are kept.

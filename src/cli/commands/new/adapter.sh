@@ -4,7 +4,7 @@
 #     adapter.sh CASE.json OUT
 #
 # CASE.json describes the problem (`oedometer schema case` has every key; SI units), OUT is an empty folder for the
-# result. The small solver below, in awk, works: replace it by yours.
+# result. The small solver below, in awk, works: replace it with yours.
 #
 # Exit code 0: solved. 77: it cannot run here, the case is skipped. Any other: it failed, and the last lines on
 # standard error are kept.

@@ -23,19 +23,34 @@ const STARTERS: [(&str, &str); 5] = [
 /// Arguments of `new`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Name or file of the study, or `solver` for an adapter of another program
+    /// Name or file of the study
     #[arg(value_name = "NAME")]
     name: PathBuf,
-    /// Name of the solver, and of the folder for its study, adapter and mapping [default: my-solver]
-    #[arg(value_name = "SOLVER")]
-    solver: Option<PathBuf>,
-    /// Scene of the study: terzaghi by default, xie-leo at large strain, cosine-layer in the plane,
-    /// layered for several soils, footing for a plate on soil that yields
+    /// Benchmark problem [default: terzaghi]: xie-leo for large strain, cosine-layer for the plane, layered for several
+    /// soils, footing for a plate on soil that yields
     #[arg(long, value_name = "SCENE")]
     scene: Option<String>,
-    /// Language of the adapter
-    #[arg(long, value_enum)]
+    /// With NAME `solver`: what `new-solver` takes as its name, and its language (version 0.3).
+    #[arg(hide = true)]
+    solver: Option<PathBuf>,
+    #[arg(long, value_enum, hide = true)]
     language: Option<Language>,
+}
+
+/// Arguments of `new-solver`.
+#[derive(Debug, clap::Args)]
+pub struct SolverArguments {
+    /// Name of the solver, and of the folder for its study, adapter and mapping
+    #[arg(value_name = "NAME", default_value = "my-solver")]
+    name: PathBuf,
+    /// Language of the adapter
+    #[arg(long, value_enum, default_value_t = Language::Python)]
+    language: Language,
+}
+
+/// Writes the adapter of a solver, with its study and its mapping.
+pub fn run_solver(arguments: &SolverArguments) -> anyhow::Result<Exit> {
+    write_adapter(&arguments.name, arguments.language)
 }
 
 /// Writes a new study or adapter; an existing file is kept.
@@ -43,7 +58,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let is_solver = arguments.solver.is_some() || arguments.language.is_some();
     if is_solver && arguments.scene.is_some() {
         return Err(Ended::usage(
-            "`--scene` belongs to `oedometer new NAME`: the adapter of a solver is for `terzaghi`",
+            "`--scene` belongs to `oedometer new NAME`: `oedometer new-solver` writes an adapter for `terzaghi`",
         ));
     }
     if is_solver && arguments.name.as_os_str() == "solver" {
@@ -51,9 +66,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         return write_adapter(&folder, arguments.language.unwrap_or(Language::Python));
     }
     if is_solver {
-        return Err(Ended::usage(
-            "a second name or `--language` belongs to `oedometer new solver NAME --language python`",
-        ));
+        return Err(Ended::usage("a second name or `--language` belongs to `oedometer new-solver NAME`"));
     }
     let given = arguments.name.display().to_string();
     let name = name_of(&given);
@@ -79,21 +92,21 @@ fn starter(name: &str, scene: Option<&str>) -> anyhow::Result<String> {
     }
     let starters = STARTERS.map(|(known, _)| known).join(", ");
     let line = format!("scene = \"{scene}\"");
-    let has_scene = |study: &StudySource| study.text.lines().any(|one| one.starts_with(&line));
+    let has_scene = |study: &StudySource| study.text.lines().any(|written| written.starts_with(&line));
     let help = match shipped_studies().into_iter().find(has_scene) {
         Some(study) => {
-            format!("`oedometer list --show {}` prints a shipped study of it", name_of(&study.name))
+            format!("`oedometer list --show {}` prints a built-in study of it", name_of(&study.name))
         }
-        None => "`oedometer list` prints all scenes".to_owned(),
+        None => "`oedometer list` lists all benchmark problems".to_owned(),
     };
-    Err(Ended::usage(format!("the scene `{scene}` has no starter (there are {starters}): {help}")))
+    Err(Ended::usage(format!("there is no starter for `{scene}` (only for {starters}): {help}")))
 }
 
 /// The error of a file or folder that cannot be written.
 fn not_written(path: &Path, error: &std::io::Error) -> anyhow::Error {
     match error.kind() {
         ErrorKind::AlreadyExists => {
-            Ended::usage(format!("{} exists already: use another name", path.display()))
+            Ended::usage(format!("{} already exists: use another name", path.display()))
         }
         _ => Ended::with(Exit::CaseFailed, format!("cannot write {}: {error}", path.display())),
     }
@@ -145,7 +158,7 @@ fn write_adapter(folder: &Path, language: Language) -> anyhow::Result<Exit> {
     }
     let study = folder.join(study);
     say!(
-        "{} attaches {}, a small solver to replace by yours; next: oedometer check {} --allow-solvers",
+        "{} attaches {}, a small solver to replace with yours; next: oedometer check {} --allow-solvers",
         study.display(),
         folder.join(file).display(),
         study.display()

@@ -55,13 +55,13 @@ pub struct Arguments {
     /// Folder of the golden values that the records are compared with [default: `golden` beside the study or above]
     #[arg(long, value_name = "DIR")]
     golden: Option<PathBuf>,
-    /// Run nothing; render existing records of any program
+    /// Run nothing; render existing records, of any build
     #[arg(long, conflicts_with = "jobs")]
     from_records: bool,
-    /// Tier of the cases to run; other cases are rendered if they have records
-    #[arg(long, value_enum, default_value_t = Tier::Full, conflicts_with = "from_records")]
+    /// Test level of the cases to run; others are rendered if they have records
+    #[arg(long, alias = "test-level", value_enum, default_value_t = Tier::Full, conflicts_with = "from_records")]
     tier: Tier,
-    /// Cases at the same time [default: all cores]
+    /// Number of cases that run in parallel [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
     /// Write what counted work costs on this machine, measured by the records of the race
@@ -167,8 +167,8 @@ fn add_finished(study: &Study, report: &mut RunReport, records: &Path) {
     let store = RecordStore::new(records, &study.name);
     let run: HashMap<String, Record> =
         report.records.drain(..).map(|record| (record.hash.clone(), record)).collect();
-    let found = |case: &Case| run.get(&case.hash()).cloned().or_else(|| store.finished(case));
-    let all: Vec<Option<Record>> = study.cases(Tier::Full).into_iter().map(found).collect();
+    let record_of = |case: &Case| run.get(&case.hash()).cloned().or_else(|| store.finished(case));
+    let all: Vec<Option<Record>> = study.cases(Tier::Full).into_iter().map(record_of).collect();
     let is_whole = all.iter().all(Option::is_some);
     let kept = all.into_iter().flatten().filter(|record| is_whole || run.contains_key(&record.hash));
     report.records = kept.collect();
@@ -199,7 +199,7 @@ fn kept(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<RunRepor
     let reports: Vec<_> = studies.par_iter().zip(&stores).map(of_study).collect();
     if reports.iter().all(|report| report.records.is_empty()) {
         let reason = format!(
-            "there is no record of these studies in {}: leave `--from-records` out, and `report` makes them",
+            "there are no records of these studies in {}: without `--from-records`, `report` makes them",
             arguments.records.display()
         );
         return Err(Ended::with(Exit::NothingSelected, reason));
@@ -223,13 +223,13 @@ fn changes(
         (!records.is_empty()).then(|| StudyComparison::of(&study.name, &before, &after))
     };
     let all: Vec<(&Study, &RunReport)> = studies.iter().zip(reports).collect();
-    let mut found: Vec<StudyComparison> = all.par_iter().filter_map(of_study).collect();
-    if found.is_empty() {
+    let mut comparisons: Vec<StudyComparison> = all.par_iter().filter_map(of_study).collect();
+    if comparisons.is_empty() {
         return None;
     }
-    found.retain(StudyComparison::has_changed);
-    found.sort_by_key(|comparison| !comparison.is_regression());
-    Some(found)
+    comparisons.retain(StudyComparison::has_changed);
+    comparisons.sort_by_key(|comparison| !comparison.is_regression());
+    Some(comparisons)
 }
 
 /// The processor by its name if the system reports it, else by its architecture, with the number of its threads.

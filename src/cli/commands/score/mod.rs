@@ -31,39 +31,40 @@ pub struct Arguments {
     /// one argument per mesh; other files are grouped by their meshes. Patterns with `*` and `?` are expanded
     #[arg(required_unless_present = "show_mapping", value_name = "FILE")]
     results: Vec<PathBuf>,
-    /// Scene of the result, like `terzaghi`
+    /// Benchmark problem that the result is of, like `terzaghi`
     #[arg(long, required_unless_present = "show_mapping", default_value = "", hide_default_value = true)]
     scene: String,
-    /// Program that wrote the files; defines what its arrays mean. --mapping overrides it key by key
+    /// Program that wrote the files: says what its arrays mean. --mapping overrides it key by key
     #[arg(long, value_enum)]
     preset: Option<Preset>,
-    /// Seconds from one numbered step to the next, if file names have the number of the step; comma-separated, one per
-    /// mesh, if each argument is a mesh
+    /// Seconds per step, where file names contain a step number; comma-separated, one per mesh, where each argument is
+    /// a mesh
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     set_time_step: Option<String>,
-    /// What the columns mean; see --show-mapping. Without it, the columns are t, y, p, `u_y`
+    /// What the columns mean; see --show-mapping [default: columns t, y, p, `u_y` in SI units]
     #[arg(long, value_name = "FILE.toml")]
     mapping: Option<PathBuf>,
-    /// Print the default mapping, with --scene the mapping of a scene, with --preset the mapping of a program
+    /// Print a mapping to edit: the default one, that of --scene, or that of --preset
     #[arg(long)]
     show_mapping: bool,
     #[command(flatten)]
     outputs: Outputs,
-    /// Largest relative difference of a time from the requested one, or from that of another mesh
+    /// Largest relative difference between a time and the requested one, or that of another mesh
     #[arg(long, value_name = "SHARE", default_value_t = 1e-3, allow_hyphen_values = true)]
     time_tolerance: f64,
     /// Cells over the height of each result, comma-separated: adds orders and classes
     #[arg(long, value_name = "LIST")]
     cells: Option<String>,
-    /// Fail with exit code 1 if an error (L2, settlement relative) against the first reference is not
-    /// below this, or if the result is incomplete
+    /// Fail (exit code 1) unless the result is complete and every error against the first reference is below this
+    /// (relative L2 error; relative error of the settlement)
     #[arg(long, value_name = "ERROR")]
     below: Option<f64>,
-    /// Quantities that the files lack on purpose, comma-separated: pressure, `effective_stress`, displacement, settlement
+    /// Quantities intentionally missing from the files, comma-separated: pressure, `effective_stress`, displacement,
+    /// settlement
     #[arg(long, value_name = "QUANTITY", value_delimiter = ',')]
     without: Vec<String>,
-    /// Fail with exit code 1 if the result is incomplete (volume, height, rows, times) or leaves something unjudged: the
-    /// settlement, a row of nodes at the surface or the base
+    /// Fail (exit code 1) if the result is incomplete (volume, height, rows, times), or if something cannot be judged:
+    /// the settlement, or nodes at the surface or the base
     #[arg(long)]
     strict: bool,
     /// Write a `JUnit` report of what --below and --strict judge
@@ -86,9 +87,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         return Ok(Exit::Pass);
     }
     if arguments.junit.is_some() && !arguments.strict && arguments.below.is_none() {
-        return Err(Ended::usage(
-            "`--junit` has nothing to report: add what it judges, --below ERROR or --strict",
-        ));
+        return Err(Ended::usage("`--junit` has no verdict to report: add --below ERROR or --strict"));
     }
     let tolerance = arguments.time_tolerance;
     if !(0.0..1.0).contains(&tolerance) {
@@ -133,10 +132,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     say!("{}", groups_of(case));
     let (findings, exit) = judged(&results, arguments.below, arguments.strict, comparison.references)?;
     if let Some(path) = &arguments.junit {
-        let told = results.all.iter().flat_map(|scored| {
+        let notes = results.all.iter().flat_map(|scored| {
             scored.score.diagnosis.iter().map(move |sentence| format!("{}: {sentence}", scored.name()))
         });
-        write_document(path, &junit_of_findings(&arguments.scene, &findings, told)?)?;
+        write_document(path, &junit_of_findings(&arguments.scene, &findings, notes)?)?;
     }
     Ok(exit)
 }
@@ -216,8 +215,8 @@ fn errors_csv(results: &Results, series: Option<&[ScoredSeries]>) -> anyhow::Res
 }
 
 /// The fields of [`SERIES_COLUMNS`]: empty if a norm has no series, the order also if the class has none.
-fn series_fields(found: Option<(usize, &ScoredSeries)>) -> [String; 3] {
-    let Some((cells, series)) = found else { return Default::default() };
+fn series_fields(series_of_mesh: Option<(usize, &ScoredSeries)>) -> [String; 3] {
+    let Some((cells, series)) = series_of_mesh else { return Default::default() };
     let class = &series.classification;
     let order = class.order.map_or(String::new(), |order| format!("{order:.16e}"));
     [cells.to_string(), order, class.class.name().to_owned()]
@@ -261,7 +260,7 @@ fn judged(
             say!("note: {name}{note}");
         }
         for lack in not_judged.iter().filter(|_| !strict) {
-            let but = if is_gate { "; `--strict` does not pass this" } else { "" };
+            let but = if is_gate { "; `--strict` fails on this" } else { "" };
             say!("note: {name}{}{but}", lack.sentence);
         }
     }
@@ -269,7 +268,7 @@ fn judged(
         return Ok((Vec::new(), Exit::Pass));
     }
     if !results.are_times_known() {
-        say!("note: missing times were not checked: give the required times with --time-factor");
+        say!("note: missing times were not checked: name the required times with --time-factor");
     }
     if let Some(bound) = below {
         let reference = references.first().map(|kind| kind.name());

@@ -60,9 +60,9 @@ pub fn read(
         }
         let mut runs = Vec::new();
         for (place, files) in given.iter().enumerate() {
-            let mut own = mapping.clone();
-            own.time.step = steps.get(place).or(steps.first()).copied().or(mapping.time.step);
-            runs.extend(runs_of(std::slice::from_ref(files), &own, body)?);
+            let mut of_files = mapping.clone();
+            of_files.time.step = steps.get(place).or(steps.first()).copied().or(mapping.time.step);
+            runs.extend(runs_of(std::slice::from_ref(files), &of_files, body)?);
         }
         runs
     } else {
@@ -82,9 +82,9 @@ pub fn read(
 
 /// The declared meaning of the columns or arrays; a note says what is assumed if nothing is declared.
 fn mapping_of(arguments: &Arguments, axes: Axes, is_tables: bool) -> anyhow::Result<Mapping> {
-    let own = arguments.mapping.as_deref().map(source_of).transpose()?;
+    let typed = arguments.mapping.as_deref().map(source_of).transpose()?;
     let mut preset = arguments.preset;
-    if preset.is_none() && own.is_none() {
+    if preset.is_none() && typed.is_none() {
         if is_tables {
             let up = "y is the initial height over the base in m, p is in Pa and positive in compression, u_y is in m and \
                       positive upward";
@@ -100,12 +100,12 @@ fn mapping_of(arguments: &Arguments, axes: Axes, is_tables: bool) -> anyhow::Res
         } else {
             preset = Preset::from_str("meshio", false).ok();
             say!(
-                "note: no --preset and no --mapping, so the arrays are looked for by the names of --preset meshio: \
+                "note: no --preset and no --mapping, so arrays are matched by the names of --preset meshio: \
                  pressure, displacement and similar ones, in SI, pressure positive in compression"
             );
         }
     }
-    Ok(Mapping::resolve(preset, own.as_ref(), axes)?)
+    Ok(Mapping::resolve(preset, typed.as_ref(), axes)?)
 }
 
 fn source_of(path: &Path) -> anyhow::Result<StudySource> {
@@ -127,8 +127,8 @@ fn cells_of(typed: &str, results: usize) -> anyhow::Result<Vec<usize>> {
         return Ok(cells);
     }
     Err(Ended::usage(format!(
-        "`--cells {typed}` has {} numbers for {results} results: give one per result; several files of one mesh are one \
-         result as a quoted pattern, like 'mesh-10/*.csv'",
+        "`--cells {typed}` has {} numbers for {results} results: give one per result; a quoted pattern, like \
+         'mesh-10/*.csv', makes the files of one mesh one result",
         cells.len()
     )))
 }
@@ -148,8 +148,8 @@ mod tests {
         }
         for (typed, count, results) in [("10", 1, 2), ("10,20,40", 3, 2), ("10", 1, 0)] {
             let told = format!(
-                "`--cells {typed}` has {count} numbers for {results} results: give one per result; several files of \
-                 one mesh are one result as a quoted pattern, like 'mesh-10/*.csv'"
+                "`--cells {typed}` has {count} numbers for {results} results: give one per result; a quoted \
+                 pattern, like 'mesh-10/*.csv', makes the files of one mesh one result"
             );
             assert_eq!(of(typed, results), Err(told));
         }

@@ -297,7 +297,7 @@ fn another_load_is_named_where_all_fields_have_it() {
                 scale(&mut state.displacement, 2.0);
             }),
             &[
-                "each of your p, effective_stress and u_y matches the exact one of 2 × the load: is the load 2 × that of the scene?",
+                "each of your p, effective_stress and u_y matches the exact one of 2 × the load: is the load 2 × that of the problem?",
             ],
         );
         only(

@@ -187,7 +187,7 @@ fn noise_changes_no_cause_that_all_columns_share() {
     for (states, words) in [
         (at(5.0), "5 × the time"),
         (at(0.1), "power of ten"),
-        (loaded, "is the load 2 × that of the scene?"),
+        (loaded, "is the load 2 × that of the problem?"),
         (turned, "is `y` counted from the other end?"),
     ] {
         for noise in [0.0, 1e-3] {

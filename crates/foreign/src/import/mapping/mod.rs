@@ -354,7 +354,7 @@ impl Mapping {
     fn turned(mut self, source: &StudySource) -> Result<Self, StudyError> {
         let Some(along) = self.columns.x.take() else {
             return Err(source.complaint(
-                "the scene is a slab, whose fields vary along x, and no column `x` gives the place of a sample".to_owned(),
+                "the problem is a slab, whose fields vary along x, and no column `x` gives the place of a sample".to_owned(),
                 "add `x = \"x\"` to [columns], from the middle of the slab to its drained side; in a file that calls this \
                  direction y the axes are exchanged: `x = \"y\"` and `u_x = \"u_y\"`"
                     .to_owned(),
@@ -405,7 +405,7 @@ impl Mapping {
             return Ok(());
         }
         Err(source.complaint(
-            "the scene is a layer, and no column `x` gives the place of a sample along it".to_owned(),
+            "the problem is a layer, and no column `x` gives the place of a sample along it".to_owned(),
             "add `x = \"x\"` to [columns] and `x = \"right\"` to [sign], for a distance from the crest of the load"
                 .to_owned(),
         ))
@@ -533,7 +533,7 @@ impl Mapping {
         refuse(
             self.whole_volume.is_some_and(|volume| !(volume.is_finite() && volume > 0.0)),
             "`whole_volume` is not positive",
-            "give what the volumes of all samples add up to",
+            "give the sum of the volumes of all samples",
         );
         refuse(
             ![self.csv.delimiter, self.csv.comment].iter().flatten().all(char::is_ascii),
