@@ -358,8 +358,10 @@ mod tests {
         };
         let shortening = -(1.0_f64 - 0.3).ln();
         let column = Column { load: shortening * soil.oedometric_modulus(), ..Column::default() };
-        // Points that cross cells fail before the predicted step.
-        for (name, least, most) in [("TL-GC-SRI-patch", 0.97, 1.05), ("MPM", 0.05, 0.97)] {
+        // Points that cross cells fail before the predicted step, and beyond a step that fails others may run.
+        for (name, least, most, above) in
+            [("TL-GC-SRI-patch", 0.97, 1.05, 1.1), ("MPM", 0.05, 0.97, 1.1 / 0.05)]
+        {
             let method = Method::named(name).expect("a known method");
             let problem = column_problem::<1>(&XIE_LEO, &column, &soil, method, 8, 2).expect("a column");
             let end = 0.05 / soil.coefficient_of_consolidation();
@@ -378,7 +380,12 @@ mod tests {
                     Schedule { time_step: TimeStep::Stable(share), ..schedule_of(&settings, end, start) };
                 run(problem.clone(), &schedule, &|_, _| true).status == RunStatus::Ok
             };
-            assert_eq!([0.95, 1.1].map(|of| runs(of * share)), [true, false], "{name}");
+            assert_eq!([0.95, above].map(|of| runs(of * share)), [true, false], "{name}");
+            assert_eq!(
+                found.probes[0].failure.is_none(),
+                runs(SHARES[0]),
+                "{name}: what is observed is what runs"
+            );
         }
     }
 }
