@@ -45,7 +45,7 @@
 //! | 1, 2 (Zheng et al. Eqs 1, 2) | accelerations of water and mixture | `crates/mpm/src/drag/mod.rs:accelerations` |
 //! | 3, 5 | porosity | `crates/soil/src/material.rs:porosity_at` |
 //! | 4, 4' (Zheng et al. Eq. 6) | rate of the pressure | `crates/mpm/src/kernel/body.rs:volume_rate` |
-//! | 6, 7 (Zheng et al. Eqs 7, 8) | stress–strain laws and conductivity | `crates/soil/src/law.rs:uniaxial_stress_ratio`, `crates/soil/src/conductivity.rs:conductivity` |
+//! | 6, 7 (Zheng et al. Eqs 7, 8) | stress–strain laws and conductivity | `crates/soil/src/law.rs:uniaxial_stress_ratio`, `crates/soil/src/law.rs:conductivity` |
 //! | 8 | selective reduced integration | `crates/mpm/src/kernel/step.rs:update_pressure` |
 //! | 9, 10, 11 | time-step limits by formula | `crates/problem/src/wave_speeds.rs:fastest_wave_speed`, `crates/problem/src/wave_speeds.rs:drag_limit`, `crates/problem/src/wave_speeds.rs:combined_limit` |
 //! | 12 | consolidation | `crates/exact/src/consolidation/mod.rs:isochrone` |
@@ -53,7 +53,7 @@
 //! | 14 | modes of the dynamic column | `crates/exact/src/dynamic_column/modes.rs:amplitude` |
 //! | 15 | large strain in general | `crates/exact/src/large_strain/diffusion.rs:coefficients` |
 //! | 16 | Mandel's slab | `crates/exact/src/mandel/sums.rs:sum`, `crates/exact/src/mandel/sums.rs:ratios` |
-//! | 17 | chord mean of the conductivity | `crates/mpm/src/kernel/chord_mean.rs:take_chord_drag`, `crates/soil/src/conductivity.rs:flow_potential` |
+//! | 17 | chord mean of the conductivity | `crates/mpm/src/kernel/chord_mean.rs:take_chord_drag`, `crates/soil/src/law.rs:flow_potential` |
 //! | 18 | rigid plate | `crates/mpm/src/actions/rigid_plate.rs:tie`, `crates/mpm/src/direct_solver/system.rs:solve` |
 //! | 19 | own weight, free water | `crates/mpm/src/kernel/weighing_body.rs:add_weight` |
 //! | 20 | pressure as a nodal field | `crates/mpm/src/operators/recovery/nodal.rs:fit` |

@@ -20,7 +20,7 @@ struct Order {
 
 const SOIL: Order = Order {
     root: "crates/soil/src",
-    floors: "wide wording base motion elementary tensor continuity plasticity stiffness von_mises law conductivity material layers",
+    floors: "wide wording base motion elementary tensor continuity plasticity stiffness law_data laws law conductivity material layers",
     circles: &[],
     licensed: &[],
 };

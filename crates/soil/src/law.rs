@@ -1,44 +1,13 @@
-//! Stress–strain laws of the skeleton, docs/theory.md, section 2: `dσ'/dt = C(E, ν) : sym ∇v_s` on the current
-//! configuration. Every integrator updates stresses by [`StressLaw::update`].
+//! What follows from a law, and the update of stresses by it, docs/theory.md, section 2: `dσ'/dt = C(E, ν) : sym ∇v_s` on the
+//! current configuration. Every integrator updates stresses by [`StressLaw::update`].
 
 use crate::elementary;
-use crate::plasticity::{Components, PointLaw, PointState, Tangent};
+use crate::law_data::{Conductivity, Modulus, PointUpdate, Stress, Uniaxial};
+pub use crate::laws::Law;
+use crate::plasticity::{Components, PointState, Tangent};
 use crate::stiffness::Stiffness;
 use crate::tensor::Tensor;
-use crate::von_mises::VonMises;
-use crate::wording::words;
 use std::array;
-
-/// Stress–strain law of the skeleton and the conductivity that goes with it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Law {
-    /// Constant modulus and conductivity.
-    Linear,
-    /// Constant modulus against logarithmic strain, `σ' = E_oed ln J` (docs/theory.md, Eq. 6), and
-    /// `k = k_0 J²`: the material of Xie & Leo (2004).
-    LogLinear,
-    /// The modulus `E = E_0/J` in the rate form, `dσ' = (E_oed/J) dJ/J`, so `σ' = E_oed (1 − 1/J)`
-    /// (docs/theory.md, Eq. 7), and `k = k_0 J²`: Zheng et al. Eqs 7 and 8, taken as rates.
-    PorosityDependent,
-    /// Modulus `E = E_0/J` with the engineering strain that it belongs to,
-    /// `dσ' = (E_oed/J) dJ`, and `k = k_0 J²`: the material of Xie & Leo by another way.
-    Engineering,
-    /// Hyperelastic, `σ' = [μ (F Fᵀ − I) + λ ln J I]/J` (Simo & Pister 1984; docs/theory.md, Eq. 28), and
-    /// `k = k_0 J²`: a stress that no path through shear or rotation changes.
-    NeoHookean,
-    /// Oedometric law with a memory: a constant modulus up to the largest effective stress so far, a lower one for first
-    /// loading beyond it, and constant conductivity (docs/theory.md, section 2).
-    Preconsolidated,
-    /// Linear elasticity, perfect plasticity of von Mises with the undrained shear strength as its shear strength, which is
-    /// Tresca's in plane strain, and constant conductivity ([`VonMises`]).
-    VonMises,
-}
-
-words!(
-    Law: Linear "linear", LogLinear "log-linear", PorosityDependent "porosity-dependent",
-    Engineering "engineering", NeoHookean "neo-hookean", Preconsolidated "preconsolidated",
-    VonMises "von-mises"
-);
 
 impl Law {
     /// The laws of columns: a rate against the logarithmic strain, which a uniaxial compression integrates in closed
@@ -49,20 +18,26 @@ impl Law {
 
     /// Whether it is one of them: whether it has a [stress of a uniaxial compression](Self::uniaxial_stress_ratio).
     pub fn is_for_columns(self) -> bool {
-        !self.uniaxial_stress_ratio(0.0).is_nan()
+        self.data().uniaxial.is_some()
     }
 
     /// Whether the stress is a function of the deformation gradient, and no rate is integrated.
     #[inline]
     pub fn is_hyperelastic(self) -> bool {
-        self == Self::NeoHookean
+        matches!(self.data().stress, Stress::NeoHookean)
+    }
+
+    /// Whether it has one modulus up to the largest stress so far, and another one for first loading.
+    #[inline]
+    pub fn is_preconsolidated(self) -> bool {
+        matches!(self.data().stress, Stress::Preconsolidated(_))
     }
 
     /// Whether the stress depends on a [`History`], so that every update has to read and to keep one, and no stiffness of
     /// the start serves for a whole run.
     #[inline]
     pub fn has_history(self) -> bool {
-        matches!(self, Self::Preconsolidated | Self::VonMises)
+        matches!(self.data().stress, Stress::Preconsolidated(_) | Stress::Yields(_))
     }
 
     /// Modulus over the initial one against the logarithmic strain `dJ/J` of the rate form, over
@@ -70,15 +45,9 @@ impl Law {
     /// whose stress is not integrated from a rate, it is 1.
     #[inline]
     pub fn modulus_ratio(self, before: f64, after: f64) -> f64 {
-        match self {
-            // The engineering law has E_0/J against dJ, and that is E_0 against dJ/J.
-            Self::Linear
-            | Self::LogLinear
-            | Self::Engineering
-            | Self::NeoHookean
-            | Self::Preconsolidated
-            | Self::VonMises => 1.0,
-            Self::PorosityDependent => 1.0 / (before * after).sqrt(),
+        match self.data().stress {
+            Stress::Rate(Modulus::InverseOfVolume) => 1.0 / (before * after).sqrt(),
+            _ => 1.0,
         }
     }
 
@@ -87,11 +56,7 @@ impl Law {
     /// [for columns](Self::for_columns), because their stress depends on Poisson's ratio too.
     #[inline]
     pub fn uniaxial_stress_ratio(self, strain: f64) -> f64 {
-        match self {
-            Self::Linear | Self::LogLinear | Self::Engineering => elementary::ln_1p(strain),
-            Self::PorosityDependent => strain / (1.0 + strain),
-            Self::NeoHookean | Self::Preconsolidated | Self::VonMises => f64::NAN,
-        }
+        self.uniaxial(|uniaxial| uniaxial.stress_ratio, strain)
     }
 
     /// Loss of volume `1 − J` under a uniaxial compression `−σ'/E_oed`; for the linear law its small-strain value.
@@ -105,11 +70,36 @@ impl Law {
     /// [`uniaxial_stress_ratio`](Self::uniaxial_stress_ratio). NaN for laws that are not for columns.
     #[inline]
     pub fn strain_under(self, compression: f64) -> f64 {
-        match self {
-            Self::Linear | Self::LogLinear | Self::Engineering => elementary::exp_m1(-compression),
-            Self::PorosityDependent => -compression / (1.0 + compression),
-            Self::NeoHookean | Self::Preconsolidated | Self::VonMises => f64::NAN,
+        self.uniaxial(|uniaxial| uniaxial.strain_under, compression)
+    }
+
+    /// Hydraulic conductivity, m/s, at volume ratio `J` from the initial one (docs/theory.md, section 2).
+    #[inline]
+    pub fn conductivity(self, initial: f64, volume_ratio: f64) -> f64 {
+        match self.data().conductivity {
+            Conductivity::Constant => initial,
+            Conductivity::SquareOfVolume => initial * volume_ratio * volume_ratio,
         }
+    }
+
+    /// `κ(J) = k/J` over the initial conductivity: the flux that a pressure gradient with respect to the initial
+    /// coordinates drives.
+    #[inline]
+    pub fn mobility_ratio(self, volume_ratio: f64) -> f64 {
+        self.conductivity(1.0, volume_ratio) / volume_ratio
+    }
+
+    /// Kirchhoff's potential `Φ` at the engineering strain `J − 1`, `dΦ = κ dσ'` over `k_0 E_oed`, zero in the
+    /// initial state; in closed form for every law for columns, NaN for others.
+    #[inline]
+    pub fn flow_potential(self, strain: f64) -> f64 {
+        self.uniaxial(|uniaxial| uniaxial.flow_potential, strain)
+    }
+
+    /// A function of the uniaxial compression; NaN without one.
+    #[inline]
+    fn uniaxial(self, of: impl Fn(&Uniaxial) -> fn(f64) -> f64, at: f64) -> f64 {
+        self.data().uniaxial.as_ref().map_or(f64::NAN, |uniaxial| of(uniaxial)(at))
     }
 }
 
@@ -146,7 +136,7 @@ impl<const D: usize> StrainIncrement<D> {
 /// discarded together with its points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct History {
-    /// Effective stress normal to the plane of the problem, Pa, tension positive; only [`Law::VonMises`] has it.
+    /// Effective stress normal to the plane of the problem, Pa, tension positive; only laws that yield have it.
     pub lateral_stress: f64,
     /// Present yield stress, Pa: for [`Law::Preconsolidated`] the largest vertical effective stress so far, compression
     /// positive.
@@ -218,10 +208,11 @@ impl StressLaw {
             }
             return;
         }
-        if self.law == Law::VonMises {
+        let stress = &self.law.data().stress;
+        if let Stress::Yields(update) = stress {
             for point in 0..N {
                 let components = strains[point].components();
-                self.update_plastic(&mut stresses[point], &mut histories[point], &components);
+                self.yielded(*update, &mut stresses[point], &mut histories[point], &components);
             }
             return;
         }
@@ -231,14 +222,15 @@ impl StressLaw {
         }
         for point in 0..N {
             let [before, after] = strains[point].volume_ratio;
-            moduli[point] = if self.law == Law::Preconsolidated {
-                self.preconsolidated_share(
+            moduli[point] = match stress {
+                Stress::Preconsolidated(secant_share) => secant_share(
                     -stresses[point][D - 1][D - 1],
                     -changes[point][D - 1][D - 1],
+                    self.virgin_share,
                     &mut histories[point].yield_stress,
-                )
-            } else {
-                self.law.modulus_ratio(before, after)
+                ),
+                Stress::Rate(Modulus::InverseOfVolume) => 1.0 / (before * after).sqrt(),
+                _ => 1.0,
             };
         }
         for point in 0..N {
@@ -252,10 +244,21 @@ impl StressLaw {
 }
 
 impl StressLaw {
-    /// Updates stress and history of a [`Law::VonMises`] point for a strain increment `xx, yy, zz, xy`, and returns the
-    /// consistent tangent, Pa.
+    /// Updates stress and history of a point for a strain increment `xx, yy, zz, xy`, and returns the consistent tangent, Pa; none
+    /// for laws that do not yield, which leave both as they are.
     pub fn update_plastic<const D: usize>(
         &self,
+        stress: &mut Tensor<D>,
+        history: &mut History,
+        strain: &Components,
+    ) -> Option<Tangent> {
+        let Stress::Yields(update) = self.law.data().stress else { return None };
+        Some(self.yielded(update, stress, history, strain))
+    }
+
+    fn yielded<const D: usize>(
+        &self,
+        update: PointUpdate,
         stress: &mut Tensor<D>,
         history: &mut History,
         strain: &Components,
@@ -268,8 +271,7 @@ impl StressLaw {
         };
         let state =
             PointState { stress: before, plastic_strain: history.plastic_strain, ..PointState::default() };
-        let law = VonMises { stiffness: self.stiffness, strength: self.strength };
-        let (after, tangent) = law.update(&state, strain);
+        let (after, tangent) = update(&self.stiffness, self.strength, &state, strain);
         let [xx, yy, zz, xy] = after.stress;
         if D > 1 {
             (stress[0][0], stress[0][up], stress[up][0]) = (xx, xy, xy);
@@ -277,20 +279,6 @@ impl StressLaw {
         stress[up][up] = yy;
         (history.lateral_stress, history.plastic_strain) = (zz, after.plastic_strain);
         tangent
-    }
-
-    /// Secant modulus of a step over the initial modulus. The step starts at a vertical compression, Pa, that would grow by
-    /// `elastic` at the initial modulus; the part beyond the yield stress follows the modulus of first loading and raises
-    /// the yield stress with it. Exact for steps of any size.
-    #[inline]
-    fn preconsolidated_share(&self, compression: f64, elastic: f64, yield_stress: &mut f64) -> f64 {
-        let beyond = elastic.min(compression + elastic - *yield_stress);
-        if beyond <= 0.0 {
-            return 1.0;
-        }
-        let gained = elastic - beyond + self.virgin_share * beyond;
-        *yield_stress = compression + gained;
-        gained / elastic
     }
 }
 
@@ -342,6 +330,43 @@ mod tests {
         };
         assert!((end(Law::Engineering) - 0.153_518_275_1).abs() < 1e-9);
         assert!((end(Law::PorosityDependent) - 1.0 / 7.0).abs() < 1e-9);
+    }
+
+    /// `∫ κ dσ'` by Gauss's rule of two points on many intervals of the stress.
+    fn potential_by_quadrature(law: Law, compression: f64) -> f64 {
+        let intervals = 400;
+        let width = compression / f64::from(intervals);
+        let mut sum = 0.0;
+        for interval in 0..intervals {
+            for along in [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8] {
+                let stress = (f64::from(interval) + 0.5 + 0.5 * along) * width;
+                sum -= 0.5 * width * law.mobility_ratio(1.0 + law.strain_under(stress));
+            }
+        }
+        sum
+    }
+
+    #[test]
+    fn the_potential_is_the_integral_of_the_mobility_over_the_stress() {
+        for law in Law::for_columns() {
+            for compression in [-0.2, 1e-6, 0.1, 0.7] {
+                let strain = law.strain_under(compression);
+                assert!((law.uniaxial_stress_ratio(strain) + compression).abs() < 1e-15, "{law:?}");
+                let exact = potential_by_quadrature(law, compression);
+                assert!(
+                    (law.flow_potential(strain) - exact).abs() < 1e-12 * exact.abs(),
+                    "{law:?} {compression}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_chord_of_the_published_material_is_the_logarithmic_mean() {
+        // J from 1 to 1/2: 0.721 where the mean of the drags is 0.667.
+        let law = Law::LogLinear;
+        let chord = law.flow_potential(-0.5) / law.uniaxial_stress_ratio(-0.5);
+        assert!((chord - 0.721_347_520_444_481_7).abs() < 1e-15);
     }
 
     proptest::proptest! {

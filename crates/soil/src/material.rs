@@ -131,10 +131,7 @@ impl Material {
 
     /// Oedometric modulus of the initial state over that of first loading: above 1 where the soil is preconsolidated.
     fn stiffening(&self) -> f64 {
-        match self.law {
-            Law::Preconsolidated => self.reload_modulus / self.oedometric_modulus(),
-            _ => 1.0,
-        }
+        if self.law.is_preconsolidated() { self.reload_modulus / self.oedometric_modulus() } else { 1.0 }
     }
 
     /// Oedometric modulus of the initial state, Pa, the largest that the soil has: that of reloading if the soil is
@@ -147,7 +144,7 @@ impl Material {
     /// Isotropic stiffness in the initial state.
     #[inline]
     pub fn stiffness(&self) -> Stiffness {
-        if self.law == Law::Preconsolidated {
+        if self.law.is_preconsolidated() {
             let first_loading = Self { law: Law::Linear, ..*self }.stiffness();
             let stiffening = self.stiffening();
             return Stiffness {

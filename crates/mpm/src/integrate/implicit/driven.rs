@@ -205,7 +205,9 @@ impl<const D: usize> DrivenStepper<D> {
             let strain = StrainIncrement { gradient, dilation, volume_ratio: [1.0; 2] };
             let (mut stress, mut history) = (self.anchor.effective_stress[point], self.anchor.history[point]);
             let law = body.stress_law_of(point);
-            self.tangents[point] = law.update_plastic(&mut stress, &mut history, &strain.components());
+            if let Some(tangent) = law.update_plastic(&mut stress, &mut history, &strain.components()) {
+                self.tangents[point] = tangent;
+            }
             (body.points.effective_stress[point], body.points.history[point]) = (stress, history);
         }
         if self.plate.has_water {

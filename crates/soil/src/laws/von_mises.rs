@@ -1,18 +1,32 @@
-//! Perfect plasticity of von Mises by radial return.
+//! `von-mises`: linear elasticity, perfect plasticity of von Mises by radial return (Wilkins 1964), and constant conductivity.
+//!
+//! In plane strain isochoric flow ends with `s_zz = 0`, where the condition `|s| = √2 k` becomes that of Tresca,
+//! `σ_1 − σ_3 = 2 k`, so the shear strength `k` is the undrained shear strength `c_u`.
 
+use crate::law_data::{Conductivity, LawData, Stress};
 use crate::plasticity::{Components, PointLaw, PointState, Tangent, UNIT, contraction, deviator, mean};
 use crate::stiffness::Stiffness;
 
-/// Linear elasticity, and perfect plasticity of von Mises by radial return (Wilkins 1964).
-///
-/// In plane strain isochoric flow ends with `s_zz = 0`, where the condition `|s| = √2 k` becomes that of Tresca,
-/// `σ_1 − σ_3 = 2 k`, so `k` is the undrained shear strength `c_u`.
+/// The law `von-mises`.
+pub static VON_MISES: LawData =
+    LawData { stress: Stress::Yields(update), conductivity: Conductivity::Constant, uniaxial: None };
+
+fn update(
+    stiffness: &Stiffness,
+    strength: f64,
+    state: &PointState,
+    strain: &Components,
+) -> (PointState, Tangent) {
+    VonMises { stiffness: *stiffness, strength }.update(state, strain)
+}
+
+/// The law with the parameters of a soil.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct VonMises {
+struct VonMises {
     /// Elastic stiffness.
-    pub stiffness: Stiffness,
+    stiffness: Stiffness,
     /// Shear strength `k`, Pa.
-    pub strength: f64,
+    strength: f64,
 }
 
 impl PointLaw for VonMises {
