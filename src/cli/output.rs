@@ -169,7 +169,7 @@ pub enum TableFormat {
 /// Prints tables separated by empty lines; JSON as an array with a list of rows per table.
 pub fn print_tables(tables: &[Table], format: TableFormat) -> anyhow::Result<()> {
     let write = match format {
-        TableFormat::Table => Table::to_text,
+        TableFormat::Table => |table: &Table| table.to_text(table_width()),
         TableFormat::Markdown => Table::to_markdown,
         TableFormat::Csv => Table::to_csv,
         TableFormat::Json => {
@@ -230,6 +230,20 @@ pub fn print_coloured(text: &str) -> anyhow::Result<()> {
 /// The marks of verdicts in their colours.
 fn coloured(text: &str) -> String {
     text.replace('✓', "\x1b[32m✓\x1b[0m").replace('✗', "\x1b[31m✗\x1b[0m")
+}
+
+/// Letters of a line of standard output: those of the terminal, or 80.
+pub fn terminal_width() -> usize {
+    let of_terminal = console::Term::stdout().size_checked().map(|(_, columns)| usize::from(columns));
+    of_terminal.filter(|columns| *columns > 0).unwrap_or(USUAL_WIDTH)
+}
+
+/// Letters of a line where standard output is no terminal.
+const USUAL_WIDTH: usize = 80;
+
+/// Letters of the lines of a table: those of the terminal; a file or another program gets each row on one line.
+pub fn table_width() -> usize {
+    if io::stdout().is_terminal() { terminal_width() } else { usize::MAX }
 }
 
 /// Whether colours are wanted: on a terminal, unless `NO_COLOR` is set or the terminal is dumb.

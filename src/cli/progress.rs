@@ -9,6 +9,7 @@ use crate::cli::output::say;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use oedometer_soil::wording::{count_of, duration};
 use std::io::IsTerminal;
+use std::time::Duration;
 
 /// The bar of a study, or of several at once.
 pub struct StudyBar(ProgressBar);
@@ -62,6 +63,40 @@ impl StudyBar {
         self.0.finish_and_clear();
     }
 }
+
+/// The case that is being solved, with the time it has taken: from a second on, on terminals.
+pub struct RunningCase(ProgressBar);
+
+impl RunningCase {
+    /// A line that is not yet drawn.
+    pub fn new() -> Self {
+        let bar = ProgressBar::new_spinner();
+        if !std::io::stderr().is_terminal() {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        if let Ok(style) = ProgressStyle::with_template("{prefix}{wide_msg} {elapsed}") {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(SHOWN_AFTER);
+        Self(bar)
+    }
+
+    /// Names the case that starts, by its place among all.
+    pub fn tell(&self, label: &str, place: usize, all: usize) {
+        if all > 1 {
+            self.0.set_prefix(format!("{} of {all}: ", place + 1));
+        }
+        self.0.set_message(label.to_owned());
+    }
+
+    /// Removes the line.
+    pub fn finish(&self) {
+        self.0.finish_and_clear();
+    }
+}
+
+/// How long a case runs before its line is drawn.
+const SHOWN_AFTER: Duration = Duration::from_secs(1);
 
 /// Seconds from which on a case is worth a word before it starts.
 const LONG_CASE: f64 = 120.0;

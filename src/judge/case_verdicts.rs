@@ -158,6 +158,7 @@ fn status_found(wanted: &str, record: &Record) -> Check {
             pass: true,
             measured: None,
             reason: format!("{UNSOUND}: {complaint}"),
+            follows: false,
         };
     }
     let found = record.status.name();
@@ -167,7 +168,13 @@ fn status_found(wanted: &str, record: &Record) -> Check {
         .map_or_else(String::new, |failure| format!("{}: {}", failure.place(), failure.reason));
     let pass = found == wanted;
     let instead = if pass { String::new() } else { format!(" instead of {wanted}") };
-    Check { name: "status".to_owned(), pass, measured: None, reason: format!("{found}{instead}{how}") }
+    Check {
+        name: "status".to_owned(),
+        pass,
+        measured: None,
+        reason: format!("{found}{instead}{how}"),
+        follows: false,
+    }
 }
 
 fn critical_step_found(within: f64, record: &Record) -> Check {
@@ -190,7 +197,8 @@ fn critical_step_found(within: f64, record: &Record) -> Check {
         })
         .collect();
     // Of a difference below the resolution of the search no more is known.
-    let pass = deviation.abs().max(found.within().unwrap_or(0.0)) <= within && found.probes_agree();
+    let is_resolved = found.within().is_none_or(|resolution| resolution <= within);
+    let pass = deviation.abs() <= within && is_resolved && found.probes_agree();
     let off = match found.within() {
         Some(resolution) => format!("within {:.2} % of", 100.0 * resolution),
         None => format!("{:+.2} % off", 100.0 * deviation),

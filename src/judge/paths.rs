@@ -103,12 +103,6 @@ pub(crate) fn common_times(all: &[Path<'_>]) -> Vec<f64> {
     first.filter(|time| all.iter().all(|path| path.records[0].case.time_factors.contains(time))).collect()
 }
 
-/// The time of the figures and of the table that stands open: the middle one of those that all paths have.
-pub(crate) fn shown_time(all: &[Path<'_>]) -> Option<f64> {
-    let times = all.first().map_or(Vec::new(), |_| common_times(all));
-    times.get(times.len().saturating_sub(1) / 2).copied()
-}
-
 /// Size of a record's level: cell size (m), time step (s), spacing of points in cells, or
 /// compressibility of the water (1/Pa).
 pub fn level_size(record: &Record, axis: Axis) -> f64 {

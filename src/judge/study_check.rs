@@ -15,12 +15,13 @@ use crate::import::mapping::Axes;
 use crate::judge::error_place::place_in_kept;
 use crate::judge::paths::{StudyPaths, grouped};
 use crate::judge::proposals::proposals;
-use crate::judge::verdict::{Absent, Judgement, differing_repeats, judge_paths};
+use crate::judge::verdict::{Absent, Judgement, VerdictOutcome, differing_repeats, judge_paths};
 use crate::measure::soundness::{self, PoorOutput};
 use crate::record::{ErrorRow, Record, Status};
 use crate::score::diagnosis::diagnosis;
 use crate::study::check::Study;
 use crate::study::file::GoldenRule;
+use oedometer_convergence::Class;
 use oedometer_exact::ReferenceKind;
 use oedometer_problem::snapshot::Snapshot;
 use oedometer_scenes::column::column_parameters;
@@ -74,6 +75,19 @@ pub struct StudyCheck {
     pub warnings: Vec<String>,
     /// What seems to be wrong with the results of other programs; it stands before all else.
     pub diagnoses: Vec<String>,
+}
+
+/// Something that fails, told once: all series or cases that fail one line of a study in the same checks.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Objection<'a> {
+    /// Line of the expectation in the study's file; none of a run that fails whatever the study expects.
+    pub line: Option<usize>,
+    /// The first series or case.
+    pub subject: &'a str,
+    /// How many others fail alike.
+    pub alike: usize,
+    /// Why, without what only follows from another reason.
+    pub reasons: Vec<&'a str>,
 }
 
 /// How a check came out.
@@ -256,6 +270,40 @@ impl StudyCheck {
         ))
     }
 
+    /// What fails, golden values aside, each once: unmet expectations, failed cases, and records that break a balance or a bound.
+    pub fn objections(&self) -> Vec<Objection<'_>> {
+        let unmet = self.judgements.iter().filter(|judgement| !judgement.verdict.pass);
+        let failing = |judgement: &Judgement| {
+            let checks = judgement.verdict.checks.iter().filter(|check| !check.pass && !check.follows);
+            checks.map(|check| check.name.clone()).collect::<Vec<_>>()
+        };
+        let unmet = grouped(unmet, |judgement| (judgement.line, failing(judgement)));
+        let mut objections: Vec<Objection<'_>> = Vec::new();
+        for ((line, _), all) in unmet {
+            let (first, alike) = (all[0], all.len() - 1);
+            let (subject, reasons) = (first.subject.as_str(), reasons_of(first));
+            objections.push(Objection { line: Some(line), subject, alike, reasons });
+        }
+        // That a case failed is told by the expectation of its end, where there is one.
+        let is_told = |case: &str| {
+            let of_end = |one: &&Judgement| {
+                one.verdict.checks.iter().any(|check| check.name == "status" && !check.pass)
+            };
+            self.judgements.iter().filter(of_end).any(|one| one.subject.starts_with(case))
+        };
+        let failed = self.failed_cases.iter().filter(|note| !is_told(&note.case));
+        for notes in [failed.collect::<Vec<_>>(), self.unsound.iter().collect()] {
+            for (case, notes) in grouped(notes, |note| note.case.as_str()) {
+                let reasons: Vec<&str> = notes.into_iter().map(|note| note.sentence.as_str()).collect();
+                match objections.iter_mut().find(|one| one.line.is_none() && one.reasons == reasons) {
+                    Some(alike) => alike.alike += 1,
+                    None => objections.push(Objection { line: None, subject: case, alike: 0, reasons }),
+                }
+            }
+        }
+        objections
+    }
+
     /// Differences from the golden values; empty without a golden file.
     pub fn differences(&self) -> &[Difference] {
         self.golden.as_deref().unwrap_or_default()
@@ -285,6 +333,23 @@ impl StudyCheck {
             CheckEnd::Pass
         }
     }
+}
+
+/// Why an expectation is not met: each failed check, of a class no more than which it is.
+fn reasons_of(judgement: &Judgement) -> Vec<&str> {
+    let verdict = &judgement.verdict;
+    if verdict.outcome == VerdictOutcome::UnexpectedPass {
+        return vec![&verdict.reason];
+    }
+    let failed = verdict.checks.iter().filter(|check| !check.pass && !check.follows);
+    failed
+        .map(|check| match check.name.as_str() {
+            "class" if verdict.classification.class != Class::NotEvaluable => {
+                check.reason.split(':').next().unwrap_or_default()
+            }
+            _ => &check.reason,
+        })
+        .collect()
 }
 
 /// One sentence for each reference that is too inaccurate at some outputs, of the record that it suits least.

@@ -42,6 +42,9 @@ pub struct Check {
     pub measured: Option<f64>,
     /// What was expected and what was found.
     pub reason: String,
+    /// Whether it fails for no other reason than the class does.
+    #[serde(skip)]
+    pub follows: bool,
 }
 
 /// The judgement of one series.
@@ -136,7 +139,7 @@ fn conclude(
 impl Check {
     /// A check that fails because there is nothing to judge.
     pub(crate) fn failed(name: &str, reason: impl Into<String>) -> Self {
-        Self { name: name.to_owned(), pass: false, measured: None, reason: reason.into() }
+        Self { name: name.to_owned(), pass: false, measured: None, reason: reason.into(), follows: false }
     }
 
     /// A number that was compared with bounds: `told`, one of the words for pass and failure, `bounds`.
@@ -150,7 +153,8 @@ impl Check {
     ) -> Self {
         let word = words[usize::from(!pass)];
         let measured = Some(measured).filter(|value| value.is_finite());
-        Self { name: name.to_owned(), pass, measured, reason: format!("{told} {word} {bounds}") }
+        let reason = format!("{told} {word} {bounds}");
+        Self { name: name.to_owned(), pass, measured, reason, follows: false }
     }
 }
 
@@ -173,7 +177,7 @@ fn rows(series: &ErrorSeries, class: Option<Class>) -> Check {
         Some(obstacle) => Check::failed("rows", obstacle.to_string()),
         None => {
             let reason = format!("{} levels", levels.len());
-            Check { name: "rows".to_owned(), pass: true, measured: None, reason }
+            Check { name: "rows".to_owned(), pass: true, measured: None, reason, follows: false }
         }
     }
 }
@@ -196,7 +200,7 @@ fn class_found(wanted: Class, found: &Classification, series: &ErrorSeries) -> C
         };
         format!("{}, expected {wanted}: {}{advice}{errors}", found.class, found.reason)
     };
-    Check { name: "class".to_owned(), pass, measured: None, reason }
+    Check { name: "class".to_owned(), pass, measured: None, reason, follows: false }
 }
 
 fn order_found(band: OrderBand, class: Option<Class>, found: &Classification) -> Check {
@@ -212,7 +216,10 @@ fn order_found(band: OrderBand, class: Option<Class>, found: &Classification) ->
         }
         _ => {
             let reason = format!("no order to compare with {limits}: the series is {}", found.class);
-            Check::failed("order", reason)
+            Check {
+                follows: class.is_some_and(|class| class != found.class),
+                ..Check::failed("order", reason)
+            }
         }
     }
 }

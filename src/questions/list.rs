@@ -3,6 +3,7 @@
 use crate::questions::audit::AUDIT;
 use crate::questions::checks::CHECKS;
 use crate::questions::choice::CHOICE;
+use crate::questions::convergence::CONVERGENCE;
 use crate::questions::cost::COST;
 use crate::questions::ends::ENDS;
 use crate::questions::fields::FIELDS;
@@ -13,12 +14,15 @@ use crate::questions::outside_runs::OUTSIDE_RUNS;
 use crate::questions::paper::PAPER;
 use crate::questions::peers::PEERS;
 use crate::questions::point_sets::POINT_SETS;
+use crate::questions::points::{POINTS, WATER};
 use crate::questions::profiles::PROFILES;
 use crate::questions::setting::SETTING;
 use crate::questions::settlement::SETTLEMENT;
 use crate::questions::stability::STABILITY;
 use crate::questions::study_results::StudyResults;
+use crate::questions::time_step::TIME_STEP;
 use crate::questions::uncertainty::UNCERTAINTY;
+use crate::questions::within::WITHIN;
 use crate::questions::work::WORK;
 use oedometer_exact::ExactError;
 use rayon::prelude::*;
@@ -29,7 +33,12 @@ use serde_json::json;
 pub static QUESTIONS: &[&Question] = &[
     &SETTING,
     &CHOICE,
+    &WITHIN,
     &SETTLEMENT,
+    &CONVERGENCE,
+    &TIME_STEP,
+    &POINTS,
+    &WATER,
     &COST,
     &PEERS,
     &PAPER,

@@ -7,22 +7,19 @@ use crate::render::marked_text::paragraphs;
 use crate::render::{RenderError, number};
 use minijinja::value::Serde;
 use minijinja::{Environment, UndefinedBehavior, Value};
+use oedometer_convergence::Class;
 use oedometer_soil::wording::{clock_time, count_of, duration, typed};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The templates by their names.
-const TEMPLATES: [(&str, &str); 10] = [
+const TEMPLATES: [(&str, &str); 6] = [
     ("changes", include_str!("../../templates/changes.md")),
-    ("converges", include_str!("../../templates/converges.md")),
-    ("drawn", include_str!("../../templates/drawn.md")),
     ("proposed", include_str!("../../templates/proposed.md")),
     ("race-headline", include_str!("../../templates/race-headline.md")),
     ("race-lead", include_str!("../../templates/race-lead.md")),
     ("race-rules", include_str!("../../templates/race-rules.md")),
-    ("time-step", include_str!("../../templates/time-step.md")),
     ("verdict", include_str!("../../templates/verdict.md")),
-    ("within", include_str!("../../templates/within.md")),
 ];
 
 /// An environment that knows every template and the filters that all share.
@@ -33,8 +30,13 @@ pub(crate) fn environment() -> Result<Environment<'static>, RenderError> {
     environment.add_filter("amounts", |all: Serde<Vec<Amount>>| amounts(&all.0));
     environment.add_filter("layers", |all: Serde<Vec<Layer>>| layers(&all.0));
     environment.add_filter("bound", |bound: f64| format!("{} %", number::number(100.0 * bound)));
-    environment.add_filter("capital_quantity", |quantity: Serde<Quantity>| {
-        words::capitalised(words::quantity(quantity.0))
+    environment.add_filter("quantity", |quantity: Serde<Quantity>| words::quantity(quantity.0));
+    environment.add_filter("order_or", |order: Option<f64>, class: Option<Serde<Class>>| match class {
+        Some(class) => words::order_with_class(class.0, order),
+        None => order.map_or_else(
+            || "too few levels for an order".to_owned(),
+            |order| format!("order {}", number::order(order)),
+        ),
     });
     environment.add_filter("count", |count: usize, singular: String, plural: String| {
         count_of(count, &singular, &plural)

@@ -2,10 +2,10 @@
 //! words that the study brings along. Pages take nothing else.
 
 use crate::case::Task;
+use crate::case::grouping::distinct;
 use crate::judge::verdict::Judgement;
 use crate::measure::statistics::larger;
 use crate::questions::findings::Findings;
-use crate::questions::findings::study_answers::StudyAnswers;
 use crate::questions::study_results::StudyResults;
 use crate::record::provenance::{Origins, Provenance};
 use crate::study::check::Study;
@@ -33,8 +33,10 @@ pub struct StudyFindings {
     pub shows_verdict: bool,
     /// The findings that are written beside its page.
     pub plain: Findings,
-    /// What it answers by itself.
-    pub answers: StudyAnswers,
+    /// Its runs.
+    pub runs: usize,
+    /// Names of its methods.
+    pub methods: Vec<String>,
     /// Its expectations, judged.
     pub judgements: Vec<Judgement>,
     /// How many of them are met.
@@ -96,8 +98,7 @@ impl StudyFindings {
     /// # Errors
     /// When a reference refuses a case.
     pub fn new(results: &StudyResults<'_>) -> Result<Self, ExactError> {
-        let StudyResults { study, records, paths, check, .. } = results;
-        let answers = StudyAnswers::new(study, records, paths);
+        let StudyResults { study, records, check, .. } = results;
         let mut origins = Origins::default();
         for record in *records {
             origins.add(&record.provenance);
@@ -110,8 +111,9 @@ impl StudyFindings {
             has_page: results.has_page,
             question: StudyQuestion::new(study),
             shows_verdict: !study.is_race || !check.judgements.is_empty() || !check.meets_all(),
-            plain: Findings::new(results, &answers)?,
-            answers,
+            plain: Findings::new(results)?,
+            runs: records.len(),
+            methods: distinct(records.iter().map(|record| record.case.method.to_string())),
             judgements: check.judgements.clone(),
             met: check.met(),
             passes: check.meets_all(),

@@ -77,11 +77,6 @@ impl<'a> StudyResults<'a> {
         self.study.planned.len().saturating_sub(self.records.len())
     }
 
-    /// Whether the study has an expectation against a reference.
-    pub(crate) fn asks_for(&self, reference: &str) -> bool {
-        self.study.expectations.iter().any(|expectation| expectation.measure.reference == reference)
-    }
-
     /// The paths of at least three levels along an axis: two levels have no order.
     pub(crate) fn refined(&self, axis: Axis) -> Vec<Path<'a>> {
         let mut paths = self.paths.along(axis).to_vec();

@@ -1,10 +1,8 @@
 //! Words for quantities, samples, axes and orders, shared by all figures and tables.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::questions::blocks::drawn::DrawnSeries;
-use crate::questions::sentence;
+use crate::render::number;
 use crate::render::table::Cell;
-use crate::render::{RenderError, number};
 use crate::study::expectation::{Axis, NEXT_FINER};
 use oedometer_convergence::Class;
 
@@ -42,11 +40,13 @@ pub fn order_or_class(class: Class, order: Option<f64>) -> String {
     }
 }
 
-/// The order or class of a series with its error on some mesh, for a cell of a table.
-pub fn order_and_error(class: Class, order: Option<f64>, error: Option<f64>) -> String {
-    // A hyphen that does not break the line.
-    let error = error.map(|error| format!(", {}", number::error(error).replace('-', "\u{2011}")));
-    order_or_class(class, order) + &error.unwrap_or_default()
+/// The same in a sentence.
+pub fn order_with_class(class: Class, order: Option<f64>) -> String {
+    match order {
+        Some(_) => format!("order {}", order_or_class(class, order)),
+        None if class == Class::NotEvaluable => "no order to evaluate".to_owned(),
+        None => class.name().to_owned(),
+    }
 }
 
 /// Sorted ticks for the sizes of levels.
@@ -145,14 +145,6 @@ pub fn error_axis(of: Quantity) -> String {
     }
 }
 
-/// Which of all series the figures show.
-///
-/// # Errors
-/// If the template cannot be filled.
-pub fn drawn(series: &DrawnSeries) -> Result<String, RenderError> {
-    sentence::sentence("drawn", series)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -229,8 +221,6 @@ mod tests {
             (Class::Divergent, None, "divergent"),
         ] {
             assert_eq!(order_or_class(class, order), words);
-            assert_eq!(order_and_error(class, order, Some(0.0012)), format!("{words}, 1.20e\u{2011}3"));
-            assert_eq!(order_and_error(class, order, None), words);
         }
         assert_eq!(["", "a b", "σ c"].map(capitalised), ["", "A b", "Σ c"]);
     }

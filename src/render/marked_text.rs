@@ -20,6 +20,38 @@ pub(crate) fn paragraphs(text: &str) -> Vec<String> {
     out
 }
 
+/// A blank at which no line is broken.
+const UNBROKEN: char = '\u{a0}';
+
+/// A text in lines of a width, the first and the others after their own margin; a longer word stays whole.
+pub(crate) fn wrapped(text: &str, first: &str, others: &str, width: usize) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    let mut line = first.to_owned();
+    let mut is_empty = true;
+    for word in text.split(|c: char| c.is_whitespace() && c != UNBROKEN).filter(|word| !word.is_empty()) {
+        let letters = word.chars().count();
+        // What fits no line stays where it is.
+        let fits_below = others.chars().count() + letters <= width;
+        if !is_empty && fits_below && line.chars().count() + 1 + letters > width {
+            lines.push(std::mem::replace(&mut line, others.to_owned()));
+            is_empty = true;
+        }
+        if !is_empty {
+            line.push(' ');
+        }
+        let shown = word.chars().filter(|c| !c.is_control());
+        line.extend(shown.map(|c| if c == UNBROKEN { ' ' } else { c }));
+        is_empty = false;
+    }
+    lines.push(line);
+    lines.join("\n") + "\n"
+}
+
+/// Marked text without its marks; code is not broken over lines.
+pub(crate) fn to_plain(text: &str) -> String {
+    write(text, &PLAIN)
+}
+
 /// How a format writes the pieces of a text.
 struct Format {
     text: fn(&str) -> String,
@@ -46,6 +78,14 @@ const MARKDOWN: Format = Format {
     link: |words, target| {
         format!("[{words}]({})", markdown_target(target).replace('<', "%3C").replace('>', "%3E"))
     },
+};
+
+const PLAIN: Format = Format {
+    text: str::to_owned,
+    code: |code| code.replace(' ', "\u{a0}"),
+    strong: [""; 2],
+    stressed: [""; 2],
+    link: |words, _| words.to_owned(),
 };
 
 /// A word of code; the name of a method explains itself when one points at it.
@@ -141,6 +181,21 @@ fn marked<'t>(text: &'t str, before: Option<char>, format: &Format) -> Option<(S
 #[cfg(test)]
 mod tests {
     use super::{html_with_code, markdown_with_code};
+
+    #[test]
+    fn lines_fit_a_terminal_and_lose_no_word() {
+        let text = "order 1.01 outside 1.90 … 2.10, ".repeat(20);
+        let lines = wrapped(&text, "  ", "    ", 80);
+        assert!(lines.lines().count() > 5 && lines.lines().all(|line| line.chars().count() <= 80));
+        assert!(lines.starts_with("  order") && lines.lines().skip(1).all(|line| line.starts_with("    ")));
+        let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(words(&lines), words(&text));
+        let long = "x".repeat(100);
+        assert_eq!(wrapped(&long, "", "  ", 80), format!("{long}\n"), "a name stays whole");
+        assert_eq!(wrapped("a\u{1b}[31m", "", "", 80), "a[31m\n", "nothing steers the terminal");
+        let marked = "**next:** `oedometer explain \"a b\"` and [words](x.html)";
+        assert_eq!(wrapped(&to_plain(marked), "", " ", 20), "next: oedometer explain \"a b\"\n and words\n");
+    }
 
     #[test]
     fn names_between_back_quotes_are_the_only_marks_of_a_tables_text() {

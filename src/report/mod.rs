@@ -3,6 +3,7 @@
 
 pub mod answers;
 pub mod blocks;
+pub mod check_page;
 pub mod checks;
 pub(crate) mod history_tables;
 pub mod sections;

@@ -13,7 +13,7 @@ use crate::tests::assert_snapshot;
 use crate::{
     Answers, Making, ReportFindings, StudyResults, Tier, answer_page, figures, index_page, junit, measures,
 };
-use crate::{render_html, render_markdown, study_page, verdicts};
+use crate::{check_page, render_html, render_markdown, study_page};
 use oedometer_soil::wording::short;
 use regex_lite::Regex;
 use std::fmt::Write as _;
@@ -363,6 +363,7 @@ fn golden(study: &Study, records: &[Record]) -> GoldenFile {
 fn checks_of_studies_are_told_as_they_were() {
     let mut text = String::new();
     let mut checks = Vec::new();
+    let terminal = check_page::Terminal { width: 80, is_whole: false };
     for study_text in [MESH, STEP, STIFF, STABILITY, LAYER, LARGE, FOOTING, SETS, FAILING] {
         let (study, mut records) = (study(study_text), records(study_text));
         let golden = golden(&study, &records);
@@ -374,8 +375,10 @@ fn checks_of_studies_are_told_as_they_were() {
         for golden in [Ok(golden), Err(GoldenError::Missing("golden/t.csv".into()))] {
             let check = StudyCheck::new(&study, &records, Tier::Ci, golden);
             // Where a line is broken depends on how many digits a number has.
-            let told = verdicts::text_of(&check, Some(&file), "").expect("a text").replace("\n    ", " ");
-            let objections = verdicts::objections_of(&check).map(|text| text.lines().count());
+            let told = check_page::text_of(&check, Some(&file), &[], terminal)
+                .expect("a text")
+                .replace("\n    ", " ");
+            let objections = check_page::objections_of(&check, 80).map(|text| text.lines().count());
             writeln!(text, "{told}{:?}, {objections:?} lines of objections\n", check.end()).expect("memory");
             checks.push(check);
         }
@@ -389,8 +392,8 @@ fn checks_of_studies_are_told_as_they_were() {
     }
     checks.retain(|check| ["mesh", "step", "failing"].contains(&check.study.as_str()));
     let file_of = |name: &str| (name != "step").then(|| format!("studies/{name}.toml"));
-    text += &verdicts::markdown_of(&checks, file_of).expect("Markdown");
-    text += &verdicts::all_judgements(&checks).to_text().expect("a table");
+    text += &check_page::markdown_of(&checks, file_of).expect("Markdown");
+    text += &check_page::all_judgements(&checks).to_text(200).expect("a table");
     text += &junit(&checks).expect("JUnit");
     assert_snapshot("checks_of_studies", &without_round_off(&text));
 }
@@ -401,7 +404,8 @@ fn measures_of_single_runs_are_told_as_they_were() {
     for study_text in [MESH, STEP, STIFF, LAYER, FOOTING, LARGE, SETS, FAILING] {
         for record in records(study_text).iter().step_by(5) {
             let label = record.case.label();
-            writeln!(text, "## {label}\n{}", measures::table_of(record).expect("a table")).expect("memory");
+            writeln!(text, "## {label}\n{}", measures::table_of(record, 80).expect("a table"))
+                .expect("memory");
         }
     }
     assert_snapshot("measures_of_runs", &without_round_off(&text));

@@ -94,7 +94,7 @@ fn golden_values_in_a_subfolder_are_found_from_the_root() {
             let words: Vec<&str> = words.iter().map(|word| if *word == "out" { out } else { word }).collect();
             let told = call(&at.join(place), &words);
             assert!(
-                told.code == 0 && told.out.contains("| s "),
+                told.code == 0 && told.out.contains("\ns "),
                 "{words:?} {place}: {}{}",
                 told.out,
                 told.err
@@ -113,7 +113,7 @@ fn golden_values_in_a_subfolder_are_found_from_the_root() {
     );
     for words in [&["history", "t"][..], &["history", "--golden", "deep/er/golden"]] {
         let told = call(at, words);
-        assert!(told.code == 0 && told.out.contains("| t "), "{words:?}: {}{}", told.out, told.err);
+        assert!(told.code == 0 && told.out.contains("\nt "), "{words:?}: {}{}", told.out, told.err);
     }
     // Another method: which cases went and came is told first, and no trend of what cannot be compared.
     accepted(&at.join("cn"), "s", &STUDY.replace("MPM", "GIMP"));

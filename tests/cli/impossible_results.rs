@@ -118,8 +118,8 @@ fn every_check_that_shows_a_mark_can_fail_and_spoils_the_record() {
             let mut one = sound.clone();
             spoil(&mut one);
             assert_eq!(soundness::complaints(&one).len(), 1, "{index}");
-            let table = measures::checks_table(&one).to_text().expect("a table");
-            assert_eq!(table.matches("| ✗").count(), 1, "{index}: {table}");
+            let table = measures::checks_table(&one).to_text(200).expect("a table");
+            assert_eq!(table.matches("  ✗").count(), 1, "{index}: {table}");
         }
     }
 }

@@ -29,7 +29,7 @@ fn a_study_of_the_step_says_its_order_and_from_where_it_is_unstable() {
     let page = steps("implicit", "0.2", &["0.4", "0.2", "0.1", "0.05"]);
     let told = answer(&page, "## What does the time step change?");
     // The scheme is of second order.
-    assert!(told.contains("at T_v = 0.2: 1.9") || told.contains("at T_v = 0.2: 2.0"), "{told}");
+    assert!(told.contains("at T_v = 0.2: order 1.9") || told.contains("at T_v = 0.2: order 2.0"), "{told}");
     assert!(told.contains(" for `GC-SRI-patch`. All steps tried are stable."), "{told}");
     assert!(
         told.contains("with Δt = 0.4 s and by") && told.contains("with Δt = 0.05 s: the mesh, not"),
@@ -46,31 +46,29 @@ fn a_study_of_the_step_says_its_order_and_from_where_it_is_unstable() {
     assert!(!told.contains("too few"), "the order is of the stable steps: {told}");
     let page = steps("implicit", "0.2", &["0.4", "0.2", "0.1"]);
     let told = answer(&page, "## What does the time step change?");
-    assert!(told.contains("at T_v = 0.2: too few steps for an order for `GC-SRI-patch`"), "{told}");
+    // Two differences have one order and no class.
+    assert!(told.contains("at T_v = 0.2: order ") && !told.contains("asymptotic"), "{told}");
 }
 
 #[test]
-fn a_study_of_the_mesh_says_what_one_percent_costs_and_one_at_large_strain_what_to_take() {
+fn a_study_of_the_mesh_says_what_it_converges_to_and_how_fast() {
     let page = front(
         "scene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = [\"MPM\", \"GC-SRI-patch\"]\n\
          integrator = [\"implicit\"]\ncells = [5, 10, 20]\n",
     );
-    let told = answer(&page, "## Does the method converge, and to what?");
-    let (_, costs) = told.split_once("A pressure within 1 % at T_v = 0.1 costs").expect(told);
-    let sentence = costs.split("Evidence").next().unwrap_or(costs);
-    assert!(sentence.contains("`GC-SRI-patch`") && sentence.contains("s on 10 cells"), "{told}");
-    assert!(!sentence.contains("`MPM`"), "no mesh of it is within 1 %: {told}");
-    assert!(told.contains("| method | p, points |"), "one regime needs no name: {told}");
+    let told = answer(&page, "## Does it converge, how fast, and to what?");
+    assert!(
+        told.contains("`GC-SRI-patch` converges to Terzaghi's solution with compressible water"),
+        "{told}"
+    );
+    assert!(told.contains("| method | error of | 5 cells | 10 | 20 | order |"), "{told}");
     let page = front(
         "scene = \"xie-leo\"\noutput.time_factors = [0.1]\ncolumn.load = 428e3\nmaterial.porosity = 0.5\n[[sweep]]\n\
          method = [\"GC-SRI-patch\", \"TL-GC-SRI-patch\"]\nintegrator = [\"implicit\"]\ncells = [5, 10, 20]\n\
          time_step = [{ growth = 0.02 }]\n",
     );
-    let told = answer(&page, "## Does the method converge, and to what?");
-    assert!(
-        told.contains("Take `TL-GC-SRI-patch` instead: the largest of its errors on 20 cells is "),
-        "{told}"
-    );
+    let told = answer(&page, "## Does it converge, how fast, and to what?");
+    assert!(told.contains("At a final strain of ") && told.contains("| `TL-GC-SRI-patch` |"), "{told}");
 }
 
 #[test]

@@ -199,7 +199,7 @@ fn what_is_declared_is_taken_over_by_name_until_a_part_of_it_changes() {
         let check = |is_ci: bool| {
             let before = place.runs();
             let told = place.call(is_ci, &["check", place.study, "--junit", "j.xml"]);
-            let is_named = told.words().contains("`mine` was not run: 1 result reused (mine cells=10)");
+            let is_named = told.words().contains("mine was not run: 1 result reused (mine cells=10)");
             let junit = fs::read_to_string(place.here.join("j.xml")).expect("JUnit");
             assert_eq!(is_named, junit.contains("1 result reused (mine cells=10)"), "{junit}");
             assert_eq!(is_named, place.runs() == before, "{}", told.out);

@@ -34,12 +34,17 @@ fn checked(text: &str, change: impl Fn(&mut Record)) -> StudyCheck {
 fn pasted_as_they_are_they_are_met_and_a_worse_solver_fails_them() {
     for swept in [MESHES, STEPS] {
         let folder = folder_with(&study(swept));
-        let told = call(folder.path(), &["check", "short.toml"]);
+        let told = call(folder.path(), &["check", "short.toml", "--verbose"]);
         assert_eq!(told.code, 5, "only golden values are missing: {}{}", told.out, told.err);
         let whole = study(swept) + &pasted(&told.out);
         fs::write(folder.path().join("short.toml"), &whole).expect("written");
         let told = call(folder.path(), &["check", "short.toml"]);
-        assert!(told.out.starts_with("short: 2 of 2 expectations met"), "{}{}\n{whole}", told.out, told.err);
+        assert!(
+            told.out.starts_with("• short: 2 of 2 expectations met"),
+            "{}{}\n{whole}",
+            told.out,
+            told.err
+        );
         assert!(!told.out.contains("no expectations yet"), "{}", told.out);
         assert_eq!(checked(&whole, |_| {}).end(), CheckEnd::Golden, "{whole}");
     }

@@ -6,9 +6,11 @@
 use crate::program::assert_snapshot;
 use oedometer::{
     AllStudies, Answers, Block, GoldenFile, GoldenKey, Making, Page, Provenance, Record, ReportFindings,
-    RunOptions, Study, StudyCheck, StudyResults, StudySource, Table, Tier, WallSample, answer_page, figures,
-    junit, measures, render_html, render_markdown, run_study, study_page, values_of, verdicts,
+    RunOptions, Study, StudyCheck, StudyResults, StudySource, Table, Tier, WallSample, answer_page,
+    check_page, figures, junit, measures, render_html, render_markdown, run_study, study_page, values_of,
 };
+
+const TERMINAL: check_page::Terminal = check_page::Terminal { width: 80, is_whole: false };
 
 const STUDY: &str = r#"
 title = "A small study"
@@ -77,7 +79,7 @@ fn tables(blocks: &[Block]) -> Vec<&Table> {
 fn every_table_of_the_report_reads_as_it_did() {
     let page = page_of_small();
     let all = page.sections.iter().flat_map(|section| tables(&section.blocks));
-    let text: Vec<String> = all.map(|table| table.to_text().expect("a table")).collect();
+    let text: Vec<String> = all.map(|table| table.to_text(200).expect("a table")).collect();
     assert_snapshot("report_tables_text", &text.join("\n\n"));
 }
 
@@ -138,7 +140,7 @@ fn the_answer_page_answers_from_records_and_asks_nothing_else() {
 #[test]
 fn the_table_of_one_case_reads_as_it_did() {
     let (_, records) = small_study();
-    assert_snapshot("solve_table", &measures::table_of(&records[4]).expect("a table"));
+    assert_snapshot("solve_table", &measures::table_of(&records[4], 80).expect("a table"));
 }
 
 #[test]
@@ -156,12 +158,15 @@ fn a_check_tells_what_is_not_met_and_what_moved() {
     let moved = StudyCheck::new(&study, &records, Tier::Full, Ok(golden));
     let keys: Vec<&GoldenKey> = moved.differences().iter().map(|one| &one.key).collect();
     assert_eq!(keys, [&key], "ten times the tolerance in one place, and nothing else");
-    let text = verdicts::text_of(&moved, None, "").expect("a text");
+    let text = check_page::text_of(&moved, None, &[], TERMINAL).expect("a text");
     assert!(text.contains("1 of 2 expectations met") && text.contains("moved"), "{text}");
-    assert_snapshot("check_unmet", &verdicts::text_of(&untouched, Some("small.toml"), "").expect("a text"));
+    assert_snapshot(
+        "check_unmet",
+        &check_page::text_of(&untouched, Some("small.toml"), &[], TERMINAL).expect("a text"),
+    );
     assert_snapshot(
         "check_markdown",
-        &verdicts::markdown_of(std::slice::from_ref(&untouched), |_| Some("small.toml".to_owned()))
+        &check_page::markdown_of(std::slice::from_ref(&untouched), |_| Some("small.toml".to_owned()))
             .expect("a text"),
     );
     assert_snapshot("check_junit", &junit(&[untouched]).expect("a document"));

@@ -230,7 +230,7 @@ fn meshes_that_stop_at_times_of_their_own_are_one_series() {
     let with = |options: &[&str]| call(at, &[&["score"], &files[..], &common, options].concat());
     let told = with(&["--below", "1"]);
     assert_eq!(told.code, 0, "{}", told.err);
-    assert!(told.out.contains("asymptotic") && told.out.contains("order 2.0"), "{}", told.out);
+    assert!(told.out.contains("asymptotic") && told.out.contains("  2.0"), "{}", told.out);
     assert!(told.out.contains("times differ between the meshes by up to 4.9e-6"), "{}", told.out);
     let told = with(&["--time-tolerance", "1e-7"]);
     assert!(told.out.contains("not-evaluable") && told.err.contains("time-missing"), "{}", told.err);
@@ -240,7 +240,7 @@ fn meshes_that_stop_at_times_of_their_own_are_one_series() {
     let told = with(&["--time-factor", "0.05"]);
     assert!(told.code == 4 && told.err.contains("1.02e-3 off"), "{}", told.err);
     let told = with(&["--time-factor", "0.05", "--time-tolerance", "2e-3"]);
-    assert!(told.code == 0 && told.out.contains("| 0.05 |"), "{}{}", told.out, told.err);
+    assert!(told.code == 0 && told.out.contains("\n0.05  pressure"), "{}{}", told.out, told.err);
     let told = with(&["--time-factor", "0.05,0.1", "--time-tolerance", "2e-3"]);
     assert!(
         told.err.contains("time-missing") && told.err.contains("T_v = 0.1, which was asked for"),
@@ -455,7 +455,10 @@ fn many_times_take_as_long_as_their_number() {
     let started = std::time::Instant::now();
     let told = call(at, &["score", "long.csv", "--scene", "terzaghi"]);
     assert_eq!(told.code, 0);
-    assert_eq!(told.out.lines().filter(|line| line.contains("| pressure ")).count(), 40_000);
+    assert_eq!(
+        told.out.lines().filter(|line| line.split_whitespace().any(|word| word == "pressure")).count(),
+        40_000
+    );
     assert!(started.elapsed().as_secs() < 600, "{:?}", started.elapsed());
 }
 

@@ -2,7 +2,7 @@
 
 use crate::case::planned::Tier;
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::{TableFormat, is_on, print_tables, say};
+use crate::cli::output::{TableFormat, is_on, print_tables, say, terminal_width};
 use crate::cli::place::{StudyArguments, golden_folder};
 use crate::cli::running::jobs_of;
 use crate::cli::running::run_quietly;
@@ -16,7 +16,7 @@ use crate::history::state::StudyState;
 use crate::judge::study_check::StudyCheck;
 use crate::record::Record;
 use crate::record::provenance::Provenance;
-use crate::report::checks::verdicts::objections_of;
+use crate::report::check_page::objections_of;
 use crate::report::history_tables::comparison_tables;
 use crate::study::check::Study;
 use crate::study::file::GoldenRule;
@@ -140,7 +140,7 @@ fn refuse_failing(studies: &[Study], records: &[Vec<Record>], despite: bool) -> 
     for (study, records) in studies.iter().zip(records) {
         let as_found = GoldenFile::of(&study.name, records, "as found");
         let check = StudyCheck::new(study, records, Tier::Ci, Ok(as_found));
-        if let Some(objections) = objections_of(&check) {
+        if let Some(objections) = objections_of(&check, terminal_width()) {
             say!("{}", objections.trim_end());
             fails = true;
         }

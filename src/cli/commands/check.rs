@@ -5,7 +5,8 @@ use crate::campaign::taken_over::TakenOver;
 use crate::case::planned::Tier;
 use crate::cli::exit::{Ended, Exit, sentence};
 use crate::cli::output::{
-    TableFormat, append, is_on, json_of, path_in, print_coloured, print_data, say, write_document,
+    TableFormat, append, is_on, json_of, path_in, print_coloured, print_data, say, terminal_width,
+    write_document,
 };
 use crate::cli::place::DEFAULT_RESULTS;
 use crate::cli::place::{StudyArguments, chosen_as, golden_of};
@@ -17,19 +18,19 @@ use crate::golden::{GoldenError, GoldenFile};
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::judge::thinning::thin;
 use crate::judge::verdict::Judgement;
-use crate::questions::finding::Place;
-use crate::questions::findings::study_answers::StudyAnswers;
+use crate::questions::finding::{Finding, Place};
 use crate::questions::list::answers;
 use crate::questions::study_results::StudyResults;
 use crate::record::Record;
-use crate::report::checks::verdicts::text_of_answers;
-use crate::report::checks::{annotations_of, junit, verdicts};
+use crate::report::check_page::{self, Terminal};
+use crate::report::checks::{annotations_of, junit};
 use crate::study::check::Study;
 use oedometer_soil::wording::count_of;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 /// Arguments of `check`.
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     #[command(flatten)]
@@ -60,6 +61,9 @@ pub struct Arguments {
     /// Print only the verdict on each study
     #[arg(short, long, conflicts_with = "format")]
     quiet: bool,
+    /// Print all that the studies answer, whether or not it fits a screen
+    #[arg(short, long, conflicts_with_all = ["format", "quiet"])]
+    verbose: bool,
     #[command(flatten)]
     trust: TrustArguments,
     /// Output format
@@ -79,11 +83,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     // What a study answers by itself stands below the verdict on it alone; a reference that refuses a case is a failure there.
     let answers = match results.as_slice() {
-        [results] if !arguments.quiet => {
-            let findings = answers(std::slice::from_ref(results), Place::Terminal).unwrap_or_default();
-            text_of_answers(&StudyAnswers::new(results.study, results.records, &results.paths), &findings)?
-        }
-        _ => String::new(),
+        [one] if !arguments.quiet => answers(std::slice::from_ref(one), Place::Terminal).unwrap_or_default(),
+        _ => Vec::new(),
     };
     let checks: Vec<StudyCheck> = results.into_iter().map(|results| results.check).collect();
     let verdict = worst_of(&checks);
@@ -93,16 +94,16 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let unread = bad.first().map(Exit::of);
     let mut refused = bad;
     let printed = if arguments.quiet {
-        print_coloured(&checks.iter().map(verdicts::verdict_on).collect::<String>())
+        print_coloured(&verdicts_alone(&checks))
     } else {
-        print(&checks, files, &answers, arguments.format)
+        print(&checks, files, &answers, arguments)
     };
     refused.extend(printed.err());
     if let Some(path) = &arguments.junit {
         refused.extend(write_document(path, &junit(&checks)?).err());
     }
     if let Some(path) = arguments.summary.clone().or_else(|| path_in("GITHUB_STEP_SUMMARY")) {
-        refused.extend(append(&path, &verdicts::markdown_of(&checks, files)?).err());
+        refused.extend(append(&path, &check_page::markdown_of(&checks, files)?).err());
     }
     if arguments.annotate || is_on("GITHUB_ACTIONS") {
         for line in annotations_of(&checks, files) {
@@ -207,24 +208,31 @@ struct CheckJson<'a> {
     diagnoses: &'a [String],
 }
 
+/// The verdicts on all studies, a line each.
+fn verdicts_alone(checks: &[StudyCheck]) -> String {
+    checks.iter().map(|check| check_page::verdict_on(check, terminal_width())).collect()
+}
+
 fn print(
     checks: &[StudyCheck],
     file_of: impl Fn(&str) -> Option<String> + Copy,
-    answers: &str,
-    format: TableFormat,
+    answers: &[Finding],
+    arguments: &Arguments,
 ) -> anyhow::Result<()> {
-    let text = match format {
+    let text = match arguments.format {
         TableFormat::Table => {
-            let text =
-                |check: &StudyCheck| verdicts::text_of(check, file_of(&check.study).as_deref(), answers);
+            let terminal = Terminal { width: terminal_width(), is_whole: arguments.verbose };
+            let text = |check: &StudyCheck| {
+                check_page::text_of(check, file_of(&check.study).as_deref(), answers, terminal)
+            };
             // What fails stands first.
             let (sound, unsound): (Vec<_>, Vec<_>) =
                 checks.iter().partition(|check| check.end() == CheckEnd::Pass);
             let texts: Result<String, _> = unsound.into_iter().chain(sound).map(text).collect();
             return print_coloured(&texts?);
         }
-        TableFormat::Markdown => verdicts::markdown_of(checks, file_of)?,
-        TableFormat::Csv => verdicts::all_judgements(checks).to_csv()?,
+        TableFormat::Markdown => check_page::markdown_of(checks, file_of)?,
+        TableFormat::Csv => check_page::all_judgements(checks).to_csv()?,
         TableFormat::Json => json_of(&checks.iter().map(CheckJson::of).collect::<Vec<_>>())?,
     };
     print_data(&text)

@@ -7,7 +7,7 @@ use crate::case::planned::Tier;
 use crate::case::work_estimate::estimated_updates;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::job_list::{JobList, missing_of};
-use crate::cli::output::{json_of, of_device, print_data, print_with, say};
+use crate::cli::output::{TableFormat, json_of, of_device, print_data, print_tables, print_with, say};
 use crate::cli::place::DEFAULT_RESULTS;
 use crate::cli::place::StudyArguments;
 use crate::cli::progress::{note_on_longest, side_by_side};
@@ -15,8 +15,10 @@ use crate::cli::running::jobs_of;
 use crate::cli::study_files::load;
 use crate::foreign::case_file::CaseFile;
 use crate::record::whole_file::write_whole;
+use crate::render::table::{Cell, Table, columns};
 use crate::study::check::Study;
 use oedometer_soil::wording::{count_of, duration};
+use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 
 /// Columns of the plan.
@@ -47,9 +49,10 @@ pub struct Arguments {
     /// Results folder of the commands [default: that of `--missing`]
     #[arg(long, value_name = "DIR", requires = "tasks")]
     out: Option<PathBuf>,
-    /// Output format
-    #[arg(long, value_enum, default_value_t = PlanFormat::Csv)]
-    format: PlanFormat,
+    /// Output format: a table, one line per case, or the case files that attached solvers get [default: a table on
+    /// terminals, else one line per case]
+    #[arg(long, value_enum)]
+    format: Option<PlanFormat>,
     /// Write the case file of each case into this folder, as HASH/case.json
     #[arg(long, value_name = "DIR")]
     case_files: Option<PathBuf>,
@@ -58,6 +61,8 @@ pub struct Arguments {
 /// How the plan is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum PlanFormat {
+    /// For people
+    Table,
     /// One line per case
     Csv,
     /// The case files that attached solvers receive
@@ -92,10 +97,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         };
         list.tell_of_balance(&all);
         print_data(&list.commands(&all, &wanted))?;
-    } else if arguments.format == PlanFormat::Json {
-        print_data(&json_of(&case_files_of(&wanted))?)?;
     } else {
-        print_with(|out| write_plan(out, &wanted))?;
+        let is_terminal = io::stdout().is_terminal();
+        match arguments.format.unwrap_or(if is_terminal { PlanFormat::Table } else { PlanFormat::Csv }) {
+            PlanFormat::Table => print_tables(&[plan_table(&wanted)], TableFormat::Table)?,
+            PlanFormat::Csv => print_with(|out| write_plan(out, &wanted))?,
+            PlanFormat::Json => print_data(&json_of(&case_files_of(&wanted))?)?,
+        }
     }
     if let Some(folder) = &arguments.case_files {
         for file in case_files_of(&wanted) {
@@ -113,6 +121,19 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 /// What the commands of studies are given of each case.
 fn case_files_of(studies: &[(&Study, Vec<&Case>)]) -> Vec<CaseFile> {
     studies.iter().flat_map(|(_, cases)| cases).map(|case| CaseFile::of(case)).collect()
+}
+
+/// Cases of a table before the rest is only counted.
+const MOST_CASES: usize = 200;
+
+/// The cases of studies with their estimated times.
+fn plan_table(studies: &[(&Study, Vec<&Case>)]) -> Table {
+    let row = |study: &Study, case: &Case| {
+        let seconds = study.estimated_seconds(case);
+        vec![Cell::Code(study.name.clone()), case.label().into(), duration(seconds).into()]
+    };
+    let rows = studies.iter().flat_map(|(study, cases)| cases.iter().map(move |case| row(study, case)));
+    Table::of("", columns("study | case | > about"), rows).shown(MOST_CASES)
 }
 
 /// Writes the plan as it goes, so that a million cases take no memory.

@@ -7,19 +7,18 @@ use crate::case::outcome::{Course, Solver};
 use crate::case::planned::{PlannedCase, Tier};
 use crate::case::{Case, Quantity};
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::{SolveFormat, csv_of, json_of, print_data, say};
-use crate::cli::progress::note_on_solve;
+use crate::cli::output::{SolveFormat, csv_of, json_of, print_data, say, table_width, terminal_width};
+use crate::cli::progress::{RunningCase, note_on_solve};
 use crate::cli::study_files::tell_warnings;
 use crate::measure::record::record_of;
 use crate::measure::soundness;
 use crate::questions::finding::Place;
-use crate::questions::findings::study_answers::StudyAnswers;
 use crate::questions::list;
 use crate::questions::study_results::StudyResults;
 use crate::record::field_files::write_fields;
 use crate::record::provenance::Provenance;
 use crate::record::{Balance, ERROR_COLUMNS, ErrorRow, Groups, Record, ReferenceUse, StartChecks, Status};
-use crate::report::checks::verdicts::text_of_answers;
+use crate::report::check_page::{Terminal, text_of_answers};
 use crate::report::tables::measures;
 use crate::study::check::{Purpose, Study};
 use crate::study::overrides::{Outputs, StudyLines, TIMING, step_rule, toml_of};
@@ -73,10 +72,14 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     tell_of_long(&study);
     let course = Course { threads: all_cores(), seconds: study.case_seconds, ..Course::alone() };
-    let solved = |planned: &PlannedCase| {
+    let clock = RunningCase::new();
+    let solved = |(place, planned): (usize, &PlannedCase)| {
+        clock.tell(&planned.case.label(), place, study.planned.len());
         record_of(&planned.case, &study.references, ThisProgram { kernel }.solve(&planned.case, &course)?)
     };
-    let records: Vec<Record> = study.planned.iter().map(solved).collect::<Result<_, _>>()?;
+    let records = study.planned.iter().enumerate().map(solved).collect::<Result<Vec<Record>, _>>();
+    clock.finish();
+    let records = records?;
     match records.as_slice() {
         [] => return Err(Ended::with(Exit::NothingSelected, "the command line describes no case")),
         [record] => print_one(record, arguments.format)?,
@@ -126,7 +129,7 @@ fn print_one(record: &Record, format: SolveFormat) -> anyhow::Result<()> {
     match format {
         SolveFormat::Csv => print_data(&csv_of(ERROR_COLUMNS, csv_rows(record))?),
         SolveFormat::Json => print_data(&json_of(&SolveJson::of(record))?),
-        SolveFormat::Table => print_data(&measures::table_of(record)?),
+        SolveFormat::Table => print_data(&measures::table_of(record, table_width())?),
     }
 }
 
@@ -144,9 +147,9 @@ fn print_meshes(study: &Study, records: &[Record], format: SolveFormat) -> anyho
         SolveFormat::Json => print_data(&json_of(&records.iter().map(SolveJson::of).collect::<Vec<_>>())?),
         SolveFormat::Table => {
             let results = StudyResults::new(study, records, Tier::Full);
-            let answers = StudyAnswers::new(study, records, &results.paths);
             let findings = list::answers(&[results], Place::Terminal)?;
-            print_data(text_of_answers(&answers, &findings)?.trim_start_matches('\n'))
+            let terminal = Terminal { width: terminal_width(), is_whole: false };
+            print_data(&text_of_answers(&findings, terminal)?)
         }
     }
 }

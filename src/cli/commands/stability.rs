@@ -3,7 +3,7 @@
 use crate::campaign::runner::{RunOptions, run_study};
 use crate::case::planned::Tier;
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::{SolveFormat, csv_of, json_of, print_data};
+use crate::cli::output::{SolveFormat, csv_of, json_of, print_data, table_width};
 use crate::cli::running::jobs_of;
 use crate::cli::study_files::tell_warnings;
 use crate::questions::stability;
@@ -62,7 +62,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     match arguments.format {
         SolveFormat::Table => {
-            print_data(&(stability::table(&report.records).to_text()? + "\n"))?;
+            print_data(&(stability::table(&report.records).to_text(table_width())? + "\n"))?;
         }
         SolveFormat::Csv => print_data(&csv_of(COLUMNS, report.records.iter().flat_map(rows_of))?)?,
         SolveFormat::Json => {

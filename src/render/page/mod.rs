@@ -4,9 +4,11 @@
 //! Running text is lightly marked: `` `code` ``, `**strong**`, `*stressed*`, `[words](target)`; a
 //! blank line ends a paragraph. Symbols such as `T_v` get their subscripts by themselves.
 
+mod text;
 mod writers;
 
-pub use writers::{render_html, render_markdown};
+pub use text::text_of;
+pub use writers::{markdown_of, render_html, render_markdown};
 
 use crate::render::chart::Chart;
 use crate::render::table::{Mood, Table};
@@ -255,12 +257,13 @@ const MOST_ROWS: usize = 200;
 
 /// The part of a table that a page shows if the table has a file, and a sentence on the rest.
 pub(crate) fn shown_rows<'a>(table: &'a Table, file: Option<&str>) -> (Cow<'a, Table>, Option<String>) {
-    let Some(file) = file.filter(|_| table.rows.len() > MOST_ROWS) else {
+    let most = table.shown.unwrap_or(MOST_ROWS).min(MOST_ROWS);
+    let Some(file) = file.filter(|_| table.rows.len() > most) else {
         return (Cow::Borrowed(table), None);
     };
     let all = number::count(table.rows.len() as u64);
-    let rest = format!("The first {MOST_ROWS} of {all} rows: [the whole table](tables/{file}.csv).");
-    let shown = Table { rows: table.rows[..MOST_ROWS].to_vec(), ..table.clone() };
+    let rest = format!("The first {most} of {all} rows: [the whole table](tables/{file}.csv).");
+    let shown = Table { rows: table.rows[..most].to_vec(), shown: None, ..table.clone() };
     (Cow::Owned(shown), Some(rest))
 }
 

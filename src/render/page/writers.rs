@@ -294,6 +294,17 @@ pub fn render_markdown(page: &Page) -> Result<String, RenderError> {
     Ok(format!("{}\n", out.join("\n\n")))
 }
 
+/// Blocks as Markdown, without files.
+///
+/// # Errors
+/// If a table is ragged.
+pub fn markdown_of(blocks: &[Block]) -> Result<String, RenderError> {
+    let mut written = Written::default();
+    let parts: Vec<String> =
+        blocks.iter().map(|block| markdown_block(block, &mut written)).collect::<Result<_, _>>()?;
+    Ok(parts.join("\n\n") + "\n")
+}
+
 /// The paragraphs of a lightly marked text.
 fn markdown_text(text: &str) -> String {
     paragraphs(text).iter().map(|paragraph| to_markdown(paragraph)).collect::<Vec<_>>().join("\n\n")

@@ -3,6 +3,7 @@
 mod writers;
 
 use crate::render::{RenderError, number};
+use oedometer_soil::wording::count_of;
 
 /// A table.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -17,6 +18,8 @@ pub struct Table {
     pub notes: Vec<String>,
     /// Name of its file, without that of its page and without an ending; a number where it has none.
     pub file: Option<String>,
+    /// Rows that a page or a terminal shows; its file has all.
+    pub shown: Option<usize>,
 }
 
 /// A column.
@@ -268,7 +271,14 @@ impl Table {
         columns: Vec<TableColumn>,
         rows: impl IntoIterator<Item = Vec<Cell>>,
     ) -> Self {
-        Self { title: title.into(), columns, rows: rows.into_iter().collect(), notes: Vec::new(), file: None }
+        Self {
+            title: title.into(),
+            columns,
+            rows: rows.into_iter().collect(),
+            notes: Vec::new(),
+            file: None,
+            shown: None,
+        }
     }
 
     /// The table, if it has rows.
@@ -281,6 +291,18 @@ impl Table {
     pub fn file(mut self, name: impl Into<String>) -> Self {
         self.file = Some(name.into());
         self
+    }
+
+    /// Sets how many rows a page or a terminal shows.
+    #[must_use]
+    pub fn shown(mut self, rows: usize) -> Self {
+        self.shown = Some(self.shown.map_or(rows, |shown| shown.min(rows)));
+        self
+    }
+
+    /// The rows that are shown.
+    pub(crate) fn shown_rows(&self) -> &[Vec<Cell>] {
+        &self.rows[..self.shown.unwrap_or(self.rows.len()).min(self.rows.len())]
     }
 
     /// Adds a line below the table.
@@ -316,16 +338,19 @@ impl Table {
         }
     }
 
-    /// The lines below the table: footnotes with their marks, then notes without.
-    pub(crate) fn lines_below(&self) -> Vec<(Option<String>, &str)> {
-        let footnotes = self.footnotes().into_iter().enumerate().map(|(i, note)| (Some(mark(i)), note));
-        footnotes.chain(self.notes.iter().map(|note| (None, note.as_str()))).collect()
+    /// The lines below the table: how many rows are not shown, footnotes with their marks, then notes without.
+    pub(crate) fn lines_below(&self) -> Vec<(Option<String>, String)> {
+        let more = self.rows.len() - self.shown_rows().len();
+        let rest = (more > 0).then(|| (None, format!("and {}", count_of(more, "more row", "more rows"))));
+        let footnotes = self.footnotes().into_iter().enumerate();
+        let footnotes = footnotes.map(|(i, note)| (Some(mark(i)), note.to_owned()));
+        rest.into_iter().chain(footnotes).chain(self.notes.iter().map(|note| (None, note.clone()))).collect()
     }
 
     /// The reasons for missing values, each once, in the order of their first appearance.
     pub(crate) fn footnotes(&self) -> Vec<&str> {
         let mut reasons: Vec<&str> = Vec::new();
-        for cell in self.rows.iter().flatten() {
+        for cell in self.shown_rows().iter().flatten() {
             if let Cell::Missing(reason) = cell
                 && !reason.is_empty()
                 && !reasons.contains(&reason.as_str())

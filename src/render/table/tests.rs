@@ -57,7 +57,7 @@ fn written(result: Result<String, RenderError>) -> String {
 
 #[test]
 fn as_text() {
-    insta::assert_snapshot!(written(sample().to_text()));
+    insta::assert_snapshot!(written(sample().to_text(80)));
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn as_csv() {
 fn a_ragged_row_is_refused_by_every_writer() {
     let mut table = sample();
     table.rows[1].pop();
-    for write in [Table::to_text, Table::to_markdown, Table::to_html, Table::to_csv] {
+    for write in [|table: &Table| table.to_text(80), Table::to_markdown, Table::to_html, Table::to_csv] {
         let told = write(&table).err().map(|e| e.to_string()).unwrap_or_default();
         assert_eq!(told, "table `Pore pressure, T_v = 0.1`: row 2 has 7 cells for 8 columns");
     }
@@ -125,6 +125,20 @@ fn shades_follow_the_ratio_footnotes_their_letters_and_long_words_a_wide_column(
 fn a_terminal_is_never_steered() {
     let mut table = Table::of("\u{1b}[31m", vec![TableColumn::text("a\n")], []);
     table.rows.push(vec!["\u{1b}]0;x\u{7}\r\n".into()]);
-    let text = written(table.to_text());
+    let text = written(table.to_text(80));
     assert!(text.chars().all(|c| c == '\n' || !c.is_control()), "{text:?}");
+}
+
+#[test]
+fn a_table_that_is_too_wide_becomes_a_list_that_loses_nothing() {
+    let rows = [vec!["a value".into(), Cell::Count(5), Cell::missing("fewer than four levels")]];
+    let table = Table::of("values", columns("value | > levels | > least squares"), rows).note("of a study");
+    let grid = "values\nvalue    levels  least squares\na value       5          – [a]\n[a] fewer than four levels\nof a study\n";
+    assert_eq!(written(table.to_text(40)), grid);
+    let text = written(table.to_text(26));
+    for part in ["values", "a value", "levels 5", "least squares – [a]", "[a] fewer", "of a study"] {
+        assert!(text.replace("\n    ", " ").contains(part), "{part}: {text}");
+    }
+    assert!(text.lines().all(|line| line.chars().count() <= 26), "{text}");
+    assert!(written(table.shown(0).to_text(40)).contains("and 1 more row\n"));
 }

@@ -1,8 +1,8 @@
-//! Writers of tables: text for a terminal, GitHub's Markdown, HTML, LaTeX and CSV.
+//! Writers of tables: text for a terminal, GitHub's Markdown, HTML, CSV and JSON.
 
 use crate::case::method_words::method_words;
 use crate::render::escape::{csv_field, html, markdown, markdown_target, one_line, plain_html};
-use crate::render::marked_text::{html_code, html_with_code, markdown_with_code};
+use crate::render::marked_text::{html_code, html_with_code, markdown_with_code, wrapped};
 use crate::render::table::{Align, Cell, Table, TableColumn, marked};
 use crate::render::{RenderError, number};
 use serde_json::{Value, json};
@@ -12,41 +12,36 @@ use std::fmt::Write as _;
 const LONG: usize = 60;
 
 impl Table {
-    /// For a terminal, without colours.
+    /// For a terminal of so many columns, without colours: a grid, or where that is too wide a list.
     ///
     /// # Errors
     /// If a row has too few or too many cells.
-    pub fn to_text(&self) -> Result<String, RenderError> {
+    pub fn to_text(&self, width: usize) -> Result<String, RenderError> {
         self.check()?;
         let footnotes = self.footnotes();
-        let mut grid = comfy_table::Table::new();
-        grid.load_style(comfy_table::presets::ASCII_MARKDOWN);
-        grid.set_content_arrangement(comfy_table::ContentArrangement::Disabled);
-        grid.set_header(self.columns.iter().map(|column| one_line(&column.heading())));
-        for row in &self.rows {
-            grid.add_row(row.iter().map(|cell| match marked(cell, &footnotes) {
-                (text, Some(mark)) => format!("{} [{mark}]", one_line(&text)),
-                (text, None) => one_line(&text),
-            }));
+        let cell = |cell: &Cell| match marked(cell, &footnotes) {
+            (text, Some(mark)) => format!("{} [{mark}]", one_line(&text)),
+            (text, None) => one_line(&text),
+        };
+        let heads: Vec<String> = self.columns.iter().map(|column| one_line(&column.heading())).collect();
+        let rows: Vec<Vec<String>> =
+            self.shown_rows().iter().map(|row| row.iter().map(cell).collect()).collect();
+        let mut out =
+            if self.title.is_empty() { String::new() } else { wrapped(&self.title, "", "  ", width) };
+        let grid = grid(&self.columns, &heads, &rows, self.file.is_some());
+        if grid.iter().all(|line| line.chars().count() <= width) {
+            out.extend(grid.into_iter().map(|line| line + "\n"));
+        } else {
+            for row in &rows {
+                let others = heads.iter().zip(row).skip(1).filter(|(_, cell)| !cell.is_empty());
+                let others: Vec<String> = others.map(|(head, cell)| format!("{head} {cell}")).collect();
+                out += &wrapped(&row[0], "  ", "    ", width);
+                out += &wrapped(&others.join("; "), "    ", "    ", width);
+            }
         }
-        for (own, column) in self.columns.iter().zip(grid.column_iter_mut()) {
-            column.set_cell_alignment(match own.align {
-                Align::Left => comfy_table::CellAlignment::Left,
-                Align::Right => comfy_table::CellAlignment::Right,
-            });
-        }
-        let mut out = String::new();
-        if !self.title.is_empty() {
-            let _ = write!(out, "{}\n\n", one_line(&self.title));
-        }
-        for row in grid.lines() {
-            let _ = writeln!(out, "{}", row.trim_end());
-        }
-        let below = self.lines_below();
-        out.push_str(if below.is_empty() { "" } else { "\n" });
-        for (mark, note) in below {
+        for (mark, note) in self.lines_below() {
             let mark = mark.map(|mark| format!("[{mark}] ")).unwrap_or_default();
-            let _ = writeln!(out, "{mark}{}", one_line(note));
+            out += &wrapped(&format!("{mark}{note}"), "", "  ", width);
         }
         Ok(out)
     }
@@ -68,12 +63,12 @@ impl Table {
         row(self.columns.iter().map(|column| markdown(&column.heading())).collect());
         let rule = |align| if align == Align::Left { ":---" } else { "---:" };
         row(self.columns.iter().map(|column| rule(column.align).to_owned()).collect());
-        for cells in &self.rows {
+        for cells in self.shown_rows() {
             row(cells.iter().map(|cell| in_markdown(cell, &footnotes)).collect());
         }
         for (mark, note) in self.lines_below() {
             let mark = mark.map(|mark| format!("<sup>{mark}</sup> ")).unwrap_or_default();
-            let _ = writeln!(out, "\n{mark}{}", markdown_with_code(note));
+            let _ = writeln!(out, "\n{mark}{}", markdown_with_code(&note));
         }
         Ok(out)
     }
@@ -104,7 +99,7 @@ impl Table {
             let _ = write!(out, "<th scope=\"col\" class=\"{class}\">{head}{unit}</th>");
         }
         out.push_str("</tr>\n</thead>\n<tbody>\n");
-        for row in &self.rows {
+        for row in self.shown_rows() {
             out.push_str("<tr>");
             for (cell, column) in row.iter().zip(&self.columns) {
                 let value = cell.value().map_or(String::new(), |value| format!(" data-v=\"{value:.5e}\""));
@@ -121,7 +116,7 @@ impl Table {
         out.push_str("</tbody>\n</table>\n</div>\n");
         for (mark, note) in self.lines_below() {
             let mark = mark.map(|mark| format!("<sup>{mark}</sup> ")).unwrap_or_default();
-            let _ = writeln!(out, "<p class=\"small\">{mark}{}</p>", html_with_code(note));
+            let _ = writeln!(out, "<p class=\"small\">{mark}{}</p>", html_with_code(&note));
         }
         Ok(out)
     }
@@ -181,6 +176,30 @@ impl Table {
         let bytes = writer.into_inner().map_err(|error| fail(error.into_error().into()))?;
         String::from_utf8(bytes).map_err(|error| fail(std::io::Error::other(error).into()))
     }
+}
+
+/// Lines of a grid: heads and rows with two blanks between columns. In an answer the first cell is not told again in the row below.
+fn grid(columns: &[TableColumn], heads: &[String], rows: &[Vec<String>], is_answer: bool) -> Vec<String> {
+    let width = |place: usize| {
+        let cells = rows.iter().map(|row| row[place].chars().count());
+        cells.chain([heads[place].chars().count()]).max().unwrap_or_default()
+    };
+    let widths: Vec<usize> = (0..columns.len()).map(width).collect();
+    let line = |cells: Vec<&str>| {
+        let cells =
+            cells.into_iter().zip(&widths).zip(columns).map(|((cell, width), column)| match column.align {
+                Align::Left => format!("{cell:<width$}"),
+                Align::Right => format!("{cell:>width$}"),
+            });
+        cells.collect::<Vec<_>>().join("  ").trim_end().to_owned()
+    };
+    let mut lines = vec![line(heads.iter().map(String::as_str).collect())];
+    for (place, row) in rows.iter().enumerate() {
+        let is_told = place > 0 && columns.len() > 1 && is_answer && rows[place - 1][0] == row[0];
+        let cells = row.iter().enumerate().map(|(at, cell)| if at == 0 && is_told { "" } else { cell });
+        lines.push(line(cells.collect()));
+    }
+    lines
 }
 
 fn in_json(cell: &Cell) -> Value {

@@ -3,13 +3,11 @@
 //!
 //! Every number comes from the findings. A question that the records do not answer is not put.
 
-mod converges;
 pub(crate) mod race;
 
 pub use race::matrix_page;
 
 use crate::history::comparison::StudyComparison;
-use crate::questions::answers::time_step::TimeStepFinding;
 use crate::questions::answers::{ReportFindings, VerdictFinding};
 use crate::questions::finding::{Finding, Place};
 use crate::questions::sentence;
@@ -143,8 +141,8 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, RenderError> {
         found(findings, "paper").map(|finding| section(finding, Place::Report)).transpose()?,
         answers.changes.map(changes_section).transpose()?,
         found(findings, "locking").map(|finding| section(finding, Place::Report)).transpose()?,
-        findings.converges.as_ref().map(converges::section).transpose()?,
-        findings.time_step.as_ref().map(time_step_section).transpose()?,
+        found(findings, "convergence").map(|finding| section(finding, Place::Report)).transpose()?,
+        found(findings, "time-step").map(|finding| section(finding, Place::Report)).transpose()?,
         found(findings, "audit").map(|finding| section(finding, Place::Report)).transpose()?,
         found(findings, "point-sets").map(|finding| section(finding, Place::Report)).transpose()?,
     ];
@@ -190,12 +188,6 @@ fn verdict(verdict: &VerdictFinding) -> Result<Callout, RenderError> {
     let passes = verdict.failing.is_empty();
     let mood = if verdict.expectations == 0 && passes { Mood::Note } else { Mood::of(passes) };
     Ok((mood, sentence::sentence("verdict", verdict)?))
-}
-
-/// The order in the step, and what the step leaves of the error.
-fn time_step_section(found: &TimeStepFinding) -> Result<Section, RenderError> {
-    let question = Question { heading: "What does the time step change?", id: "time-step" };
-    Ok(question.answered(&sentence::sentence("time-step", found)?, [found.study.as_str()], Vec::new()))
 }
 
 /// How many studies changed.

@@ -4,7 +4,7 @@ use crate::judge::verdict::Judgement;
 use crate::questions::study_findings::StudyFindings;
 use crate::render::page::{Block, Callout};
 use crate::render::table::Mood;
-use crate::report::checks::verdicts::judgements_table;
+use crate::report::check_page::judgements_table;
 use oedometer_soil::wording::count_of;
 use std::fmt::Write;
 

@@ -75,7 +75,7 @@ fn studies_table(studies: &[&StudyFindings]) -> Table {
             } else {
                 Cell::Text(one.title.clone())
             },
-            Cell::Count(one.plain.runs.len() as u64),
+            Cell::Count(one.runs as u64),
             met_cell(one),
             Cell::Code(one.run_command.clone()),
         ]
@@ -121,8 +121,7 @@ fn numbers_section(all: &AllStudies) -> Section {
 
 /// What the names of the methods stand for.
 fn names_section(studies: &[StudyFindings]) -> Section {
-    let runs = studies.iter().flat_map(|study| &study.plain.runs);
-    let names = distinct(runs.map(|run| run.method.as_str()));
+    let names = distinct(studies.iter().flat_map(|study| study.methods.iter().map(String::as_str)));
     let rows = names
         .into_iter()
         .filter_map(|name| Some(vec![Cell::Code(name.to_owned()), Cell::Text(method_words(name)?)]));

@@ -11,7 +11,7 @@ use crate::render::table::{Cell, Table, columns};
 
 /// Who reaches the tolerance in the problem of a page; empty for any other study.
 pub fn blocks(study: &StudyFindings) -> Vec<Block> {
-    let Some(situation) = study.plain.blocks.race.as_ref().filter(|one| !one.is_property) else {
+    let Some(situation) = study.plain.race.as_ref().filter(|one| !one.is_property) else {
         return Vec::new();
     };
     let entries = CONTENDERS.iter().filter_map(|one| situation.entry(one.name));

@@ -3,18 +3,14 @@
 use crate::questions::study_findings::StudyFindings;
 use crate::render::RenderError;
 use crate::render::page::{Block, Page, Section, slug};
-use crate::report::blocks::{answers, expectations, race, refinement};
+use crate::report::blocks::{answers, expectations, race};
 
 /// A part of the page: its blocks, or none where the findings have nothing for it.
 type Part = fn(&StudyFindings) -> Result<Vec<Block>, RenderError>;
 
 /// The parts in the order of the page, after what is not as expected.
-const PARTS: [Part; 4] = [
-    |study| Ok(race::blocks(study)),
-    answers::blocks,
-    refinement::blocks,
-    |study| Ok(expectations::all(study)),
-];
+const PARTS: [Part; 3] =
+    [|study| Ok(race::blocks(study)), answers::blocks, |study| Ok(expectations::all(study))];
 
 /// The page of a study.
 ///

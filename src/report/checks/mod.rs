@@ -1,7 +1,5 @@
-//! The results of `check` for a terminal, as Markdown, as annotations of GitHub's workflows at the line of the study that
+//! The results of `check` as annotations of GitHub's workflows at the line of the study that
 //! asked for it, and as `JUnit` in the Jenkins dialect.
-
-pub mod verdicts;
 
 use crate::campaign::taken_over::TakenOver;
 use crate::golden::compare::Change;
@@ -12,18 +10,15 @@ use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, Te
 use std::collections::BTreeMap;
 
 /// Something that failed, with the sentence on it.
-struct Failure<'a> {
+pub(super) struct Failure<'a> {
     /// Line of the study file that asked for it.
     line: usize,
-    subject: &'a str,
+    pub(super) subject: &'a str,
     sentence: String,
 }
 
-/// Titles of the lists of failures, in the order of [`failures_of`].
-const TITLES: [&str; 3] = ["expectations not met", "failed cases", "records that break a balance or a bound"];
-
 /// What failed in a check, golden values aside: unmet expectations, failed cases, and records that break a balance or a bound.
-fn failures_of(check: &StudyCheck) -> [Vec<Failure<'_>>; 3] {
+pub(super) fn failures_of(check: &StudyCheck) -> [Vec<Failure<'_>>; 3] {
     let unmet = check.judgements.iter().filter(|judgement| !judgement.verdict.pass).map(|judgement| {
         let (class, reason) = (judgement.verdict.classification.class.name(), &judgement.verdict.reason);
         let sentence = if reason.starts_with(class) { reason.clone() } else { format!("{class}: {reason}") };
@@ -237,7 +232,7 @@ fn status(pass: bool, sentence: &str) -> TestCaseStatus {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::golden::GoldenError;
     use crate::golden::compare::{Difference, DifferenceGroup};
@@ -245,7 +240,7 @@ mod tests {
     use crate::judge::study_check::CaseNote;
 
     /// Golden values of one kind of change.
-    pub(super) fn group(change: Change) -> DifferenceGroup {
+    pub(in crate::report) fn group(change: Change) -> DifferenceGroup {
         let key = key("MPM", 0.1, "pressure points terzaghi");
         let worst = Difference { key, change, golden: Some(1.0), found: Some(2.0), tolerance: 1e-9 };
         let shared = Vec::new();
@@ -261,7 +256,7 @@ mod tests {
     }
 
     /// A check with failed cases and a warning.
-    pub(super) fn check(failures: usize) -> StudyCheck {
+    pub(in crate::report) fn check(failures: usize) -> StudyCheck {
         let note =
             |number| CaseNote { case: format!("case {number}"), sentence: "unstable: 5 %,\nsoon".to_owned() };
         StudyCheck {

@@ -14,9 +14,9 @@ use std::fmt::Write;
 ///
 /// # Errors
 /// If a table cannot be written.
-pub fn table_of(record: &Record) -> Result<String, RenderError> {
-    let mut text = errors_table(record).to_text()?;
-    let _ = write!(text, "\n{}", checks_table(record).to_text()?);
+pub fn table_of(record: &Record, width: usize) -> Result<String, RenderError> {
+    let mut text = errors_table(record).to_text(width)?;
+    let _ = write!(text, "\n{}", checks_table(record).to_text(width)?);
     Ok(text)
 }
 

@@ -1,6 +1,5 @@
 //! Tables of records, scores, golden values and measured times, for every command that shows them.
 
-pub mod convergence;
 pub mod explanation;
 pub mod golden_changes;
 pub mod measures;

@@ -5,7 +5,7 @@ use crate::campaign::taken_over::TakenOver;
 use crate::case::Case;
 use crate::case::planned::Tier;
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::{json_of, print_data, say};
+use crate::cli::output::{json_of, print_data, say, terminal_width};
 use crate::cli::place::DEFAULT_RESULTS;
 use crate::cli::place::{StudyArguments, chosen_as, golden_of};
 use crate::cli::running::refuse_unfinished;
@@ -17,6 +17,8 @@ use crate::golden::GoldenFile;
 use crate::history::comparison::StudyComparison;
 use crate::history::state::StudyState;
 use crate::questions::answers::ReportFindings;
+use crate::questions::finding::Place;
+use crate::questions::list::answers;
 use crate::questions::study_findings::{AllStudies, StudyFindings};
 use crate::record::Record;
 use crate::record::calibration::{calibrate, calibration_csv};
@@ -29,7 +31,7 @@ use crate::render::page::{Page, all_figures, render_html, render_markdown, slug,
 use crate::report::answers::{Answers, Making, answer_page, matrix_page};
 use crate::report::blocks::index_page::index_page;
 use crate::report::blocks::study_page::study_page;
-use crate::report::checks::verdicts::text_of_answers;
+use crate::report::check_page::{Terminal, text_of_answers};
 
 use crate::questions::race_tables;
 use crate::questions::study_results::StudyResults;
@@ -112,8 +114,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         changes(&studies, &reports, |study| golden_of(arguments.golden.as_deref(), study, &chosen).ok());
     let all = AllStudies::new(&results)?;
     let written = write_files(&arguments.out, (&results, &all), changes.as_deref(), making, start)?;
-    if let [study] = all.studies.as_slice() {
-        print_data(text_of_answers(&study.answers, &study.plain.findings)?.trim_start_matches('\n'))?;
+    if let [one] = results.as_slice() {
+        let terminal = Terminal { width: terminal_width(), is_whole: false };
+        print_data(&text_of_answers(&answers(std::slice::from_ref(one), Place::Terminal)?, terminal)?)?;
     }
     say!("the report is {}", written.display());
     let is_whole = reports.iter().all(|report| report.errors.is_empty());

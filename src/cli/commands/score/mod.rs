@@ -119,12 +119,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         }
         _ => {
             let mut tables = Vec::new();
+            if let Some((series, cells)) = &series {
+                tables.push(scores::series_table(series, cells));
+            }
             for scored in &results.all {
                 let title = format!("{}: {}", arguments.scene, scored.name());
                 tables.push(scores::errors_table(&scored.score, &title));
-            }
-            if let Some((series, cells)) = &series {
-                tables.push(scores::series_table(series, cells));
             }
             print_tables(&tables, arguments.format)?;
         }
@@ -145,6 +145,7 @@ fn lead(results: &Results, arguments: &Arguments, references: &[ReferenceKind]) 
     let is_gate = arguments.strict || arguments.below.is_some();
     let reference = references.first().map(|kind| kind.name());
     let errors = arguments.below.map(|bound| errors_below(bound, &results.all, reference)).transpose()?;
+    let judged = errors.as_ref().map_or(0, Vec::len);
     let too_large = errors.into_iter().flatten().filter_map(|finding| finding.failure);
     let incomplete = results.all.iter().filter(|_| is_gate).flat_map(|scored| {
         let name = scored.name();
@@ -160,8 +161,11 @@ fn lead(results: &Results, arguments: &Arguments, references: &[ReferenceKind]) 
         0 | 1 => String::new(),
         all => format!(" (and {} more below)", all - 1),
     };
-    if let Some(first) = reasons.first() {
-        say!("✗ {first}{more}");
+    match (reasons.first(), arguments.below) {
+        (Some(first), _) => say!("✗ {first}{more}"),
+        (None, Some(bound)) => say!("✓ {} below {bound:e}", count_of(judged, "error is", "errors are")),
+        (None, None) if is_gate => say!("✓ the results are complete"),
+        (None, None) => {}
     }
     for scored in &results.all {
         let name =
@@ -276,11 +280,7 @@ fn judged(
         for failure in errors.iter().filter_map(|finding| finding.failure.as_ref()) {
             say!("fail: {failure}");
         }
-        let judged = errors.len();
         findings.extend(errors);
-        if findings.iter().all(|finding| finding.failure.is_none()) {
-            say!("pass: {} below {bound:e}", count_of(judged, "error is", "errors are"));
-        }
     }
     let passes = findings.iter().all(|finding| finding.failure.is_none());
     Ok((findings, if passes { Exit::Pass } else { Exit::VerdictFailed }))

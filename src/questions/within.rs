@@ -5,12 +5,206 @@ use crate::case::grouping::distinct;
 use crate::case::{Case, Quantity, Sample};
 use crate::judge::paths::grouped;
 use crate::judge::reaching::QuotedRuns;
+use crate::questions::finding::{Finding, Part, Place, Question};
+use crate::questions::study_results::StudyResults;
+use crate::questions::words;
 use crate::record::calibration::cost_of;
 use crate::record::{ErrorRow, Record};
+use crate::render::number;
+use crate::render::table::{Cell, Mood, Table, columns};
 use crate::study::check::Study;
 use oedometer_problem::time_step::TimeStep;
+use oedometer_soil::wording::duration;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
+
+/// What comes within a bound, and at what cost?
+pub static WITHIN: Question = Question {
+    id: "within",
+    heading: "What comes within a bound?",
+    template: include_str!("within.md"),
+    places: &[Place::Terminal, Place::Study],
+    facts: |schemas| schemas.subschema_for::<Facts>(),
+    ask: |studies| Ok(ask(studies)),
+};
+
+/// Every number and name of the sentence.
+#[derive(Serialize, JsonSchema)]
+struct Facts {
+    /// The larger bound.
+    bound: f64,
+    /// Problems that every choice solves: soils, loads and geometries.
+    problems: usize,
+    /// Quantities that come within it, each by the cheapest choice.
+    reached: Vec<ChoiceFacts>,
+    /// Quantities that do not, each with the choice of the least error.
+    missed: Vec<ChoiceFacts>,
+}
+
+/// A method and mesh with the largest error over all outputs and problems.
+#[derive(Serialize, JsonSchema)]
+struct ChoiceFacts {
+    /// Quantity.
+    quantity: Quantity,
+    /// Method, or name of another solver.
+    method: String,
+    /// Cells over the height.
+    cells: usize,
+    /// Largest error.
+    error: f64,
+    /// Time factor of the output that has it.
+    time_factor: f64,
+    /// Time of that output, s.
+    seconds: f64,
+}
+
+fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
+    let [one] = studies else { return None };
+    let found = (!one.study.is_race).then(|| within(one.study, one.records))?;
+    answer(&one.study.name, &found)
+}
+
+fn answer(study: &str, all: &[QuantityWithin]) -> Option<Finding> {
+    let bound = all.first()?.bounds.first()?.bound;
+    let of = |asked: &QuantityWithin, choice: &WithinFinding| ChoiceFacts {
+        quantity: asked.quantity,
+        method: choice.method.clone(),
+        cells: choice.cells,
+        error: choice.error,
+        time_factor: choice.time_factor,
+        seconds: choice.seconds,
+    };
+    let reached = all.iter().filter_map(|asked| Some(of(asked, asked.bounds[0].choice.as_ref()?)));
+    let missed = all.iter().filter(|asked| asked.bounds[0].choice.is_none());
+    let facts = Facts {
+        bound,
+        problems: all[0].problems,
+        reached: reached.collect(),
+        missed: missed.map(|asked| of(asked, &asked.best)).collect(),
+    };
+    let finding = WITHIN.answer([study], &facts).with(Part::Table(table(all)));
+    let others =
+        others(all).map(|table| Part::Details("What else comes within".to_owned(), vec![Part::Table(table)]));
+    Some(others.into_iter().fold(finding, Finding::with))
+}
+
+/// A row per quantity and bound: the cheapest choice, or where none stays within, the one with the least error.
+fn table(all: &[QuantityWithin]) -> Table {
+    let mut rows = Vec::new();
+    let choices = all.iter().flat_map(|asked| asked.bounds.iter().filter_map(|bound| bound.choice.as_ref()));
+    let integrators =
+        distinct(choices.chain(all.iter().map(|asked| &asked.best)).map(|one| one.integrator.as_str()));
+    let shared = if let [only] = integrators[..] { Some(only) } else { None };
+    for asked in all {
+        for (place, bound) in asked.bounds.iter().enumerate() {
+            match &bound.choice {
+                Some(choice) => rows.push(row((asked, bound.bound), choice, true, shared)),
+                // What misses the larger bound misses the smaller one.
+                None if place == 0 || asked.bounds[0].choice.is_some() => {
+                    rows.push(row((asked, bound.bound), &asked.best, false, shared));
+                }
+                None => {}
+            }
+        }
+    }
+    let has = |mark: &str| rows.iter().flatten().any(|cell: &Cell| cell.show().starts_with(mark));
+    let notes = [
+        has("✗")
+            .then(|| "✗: no run whose checks pass is within the bound; the least error is shown".to_owned()),
+        has("•").then(|| "•: no finer mesh confirms it".to_owned()),
+        has("≥").then(|| "≥: no longer step was tried".to_owned()),
+    ];
+    let notes: Vec<String> = notes.into_iter().flatten().chain(far_words(all)).collect();
+    let everywhere =
+        if all[0].problems > 1 { format!(" in all {} problems", all[0].problems) } else { String::new() };
+    let header = "error of | > bound | method | > cells | > step | > largest | > at T_v";
+    let is_counted = all.iter().all(|asked| asked.best.cost > 0.0);
+    let least = if is_counted { "Least counted work" } else { "Coarsest mesh" };
+    let integrator = shared.filter(|name| !name.is_empty()).map_or(String::new(), |name| format!(", {name}"));
+    let title = format!("{least} within a bound at every output{everywhere}{integrator}");
+    Table::of(title, columns(header), rows).notes(notes).file(WITHIN.id)
+}
+
+/// The cells of a choice; an integrator that all choices share stands in the title.
+fn row(
+    (asked, bound): (&QuantityWithin, f64),
+    choice: &WithinFinding,
+    is_within: bool,
+    shared: Option<&str>,
+) -> Vec<Cell> {
+    let method = match &*choice.integrator {
+        own if own.is_empty() || shared == Some(own) => choice.method.clone(),
+        integrator => format!("{}, {integrator}", choice.method),
+    };
+    let step = match choice.largest_step {
+        step if step <= 0.0 => Cell::missing("another program's"),
+        step if choice.is_longest_tried => format!("≥ {}", duration(step)).into(),
+        step => duration(step).into(),
+    };
+    vec![
+        words::quantity(asked.quantity).into(),
+        Cell::Text(format!("{} %", number::number(100.0 * bound))),
+        match (is_within, choice.is_confirmed) {
+            (false, _) => Cell::Verdict(Mood::Fail, method),
+            (true, false) => Cell::Verdict(Mood::Note, method),
+            (true, true) => Cell::Code(method),
+        },
+        Cell::Count(choice.cells as u64),
+        step,
+        Cell::Percent(choice.error),
+        Cell::Text(number::time_factor(choice.time_factor)),
+    ]
+}
+
+/// Methods that a note on those far off names.
+const MOST_NAMED: usize = 3;
+
+/// The methods that are far off on their finest mesh, in words; `None` where none is.
+fn far_words(all: &[QuantityWithin]) -> Option<String> {
+    let far =
+        all.iter().flat_map(|asked| asked.far.iter().map(move |one| (words::quantity(asked.quantity), one)));
+    let methods = grouped(far, |(_, one)| (one.method.as_str(), one.cells));
+    let named = methods.iter().take(MOST_NAMED).map(|((method, cells), errors)| {
+        let errors =
+            errors.iter().map(|(quantity, one)| format!("{quantity} {}", number::percent(one.error)));
+        format!("{method} on {cells} ({})", errors.collect::<Vec<_>>().join(", "))
+    });
+    let named = named.collect::<Vec<_>>().join(", ");
+    let more = match methods.len().saturating_sub(MOST_NAMED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let far = number::number(100.0 * FAR);
+    (!methods.is_empty()).then(|| format!("off by more than {far} % on the most cells: {named}{more}"))
+}
+
+/// Other methods and integrators within the bounds; `None` where there is none.
+fn others(all: &[QuantityWithin]) -> Option<Table> {
+    let mut rows = Vec::new();
+    for (asked, bound) in all.iter().flat_map(|asked| asked.bounds.iter().map(move |bound| (asked, bound))) {
+        let mut row = |who: String, cells: Option<usize>, is_confirmed: bool, ratio: Option<f64>| {
+            rows.push(vec![
+                words::quantity(asked.quantity).into(),
+                Cell::Text(format!("{} %", number::number(100.0 * bound.bound))),
+                if is_confirmed { Cell::Code(who) } else { Cell::Verdict(Mood::Note, who) },
+                cells.map_or(Cell::missing("no run reaches it"), |cells| Cell::Count(cells as u64)),
+                Cell::of(ratio, Cell::Number, "of another method on its coarsest mesh"),
+            ]);
+        };
+        for one in &bound.others {
+            row(one.method.clone(), Some(one.cells), one.is_confirmed, None);
+        }
+        for one in &bound.integrators {
+            let choice = one.choice.as_ref();
+            let method = choice.map_or(String::new(), |choice| format!("{}, ", choice.method));
+            let is_confirmed = choice.is_some_and(|choice| choice.is_confirmed);
+            let cells = choice.map(|choice| choice.cells);
+            row(method + &one.integrator, cells, is_confirmed, one.cost_ratio);
+        }
+    }
+    let header = "error of | > bound | method | > cells | > work over the least";
+    Table::of("Others within the bounds", columns(header), rows).file("within-others").unless_empty()
+}
 
 /// Bounds for which the cheapest choice is looked for.
 const BOUNDS: [f64; 2] = [0.01, 0.001];
@@ -28,7 +222,7 @@ const ASKED: [Quantity; 5] = [
 ];
 
 /// A quantity and what it takes to come within bounds of its error.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct QuantityWithin {
     /// Quantity.
     pub quantity: Quantity,
@@ -47,7 +241,7 @@ pub struct QuantityWithin {
 }
 
 /// A bound and the cheapest choice within it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct BoundWithin {
     /// Relative error.
     pub bound: f64,
@@ -60,19 +254,18 @@ pub struct BoundWithin {
 }
 
 /// Another method within the bound.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct OtherMethod {
     /// Method, or name of another solver.
     pub method: String,
     /// Cells over the height.
     pub cells: usize,
     /// Whether a finer mesh stays within the bound too.
-    #[serde(default)]
     pub is_confirmed: bool,
 }
 
 /// A method that stays far from the exact solution on its finest mesh.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FarMethod {
     /// Method, or name of another solver.
     pub method: String,
@@ -83,7 +276,7 @@ pub struct FarMethod {
 }
 
 /// What another integrator takes for the same bound.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct IntegratorWithin {
     /// Integrator.
     pub integrator: String,
@@ -94,7 +287,7 @@ pub struct IntegratorWithin {
 }
 
 /// Method, mesh and step, with the largest error over all outputs and problems.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct WithinFinding {
     /// Method, or name of another solver.
     pub method: String,
@@ -111,7 +304,6 @@ pub struct WithinFinding {
     /// Whether no run of the same method on the same mesh took larger steps: the limit may be larger.
     pub is_longest_tried: bool,
     /// Whether a finer mesh stays within the bound too, in every problem.
-    #[serde(default)]
     pub is_confirmed: bool,
     /// Largest error.
     pub error: f64,
