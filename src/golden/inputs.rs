@@ -59,7 +59,8 @@ impl InputChange {
     }
 }
 
-/// The inputs of a case as a study may give them, in one order for all cases: numbers with their unit.
+/// The inputs of a case as a study may give them, in one order for all cases: numbers with their unit. Keys that give another
+/// one in other words are left out: their values follow from it.
 fn inputs_of(case: &Case) -> Vec<(&'static str, String)> {
     let text = |key: &Key| match key.get(case) {
         Value::Number(number) => format!("{} {}", shortest(number), key.unit).trim_end().to_owned(),
@@ -70,7 +71,8 @@ fn inputs_of(case: &Case) -> Vec<(&'static str, String)> {
         ("time_factors", format!("{:?}", &case.time_factors[..])),
         ("soils", format!("{:?}", case.column.soils)),
     ];
-    KEYS.iter().map(|key| (key.name, text(key))).chain(lists).collect()
+    let keys = KEYS.iter().filter(|key| key.in_place_of.is_empty());
+    keys.map(|key| (key.name, text(key))).chain(lists).collect()
 }
 
 #[cfg(test)]

@@ -40,8 +40,10 @@ fn dimension(key: &str, dimensions: i32) -> [i32; 3] {
             [0, 1, 0]
         }
         "hydraulic_conductivity" | "largest_velocity" => [1, -1, 0],
+        "coefficient_of_consolidation" => [2, -1, 0],
         "gravity" => [1, -2, 0],
-        "load" | "pressure" | "effective_stress" | "youngs_modulus" | "water_bulk_modulus" => [-1, -2, 1],
+        "load" | "pressure" | "effective_stress" | "youngs_modulus" | "oedometric_modulus"
+        | "water_bulk_modulus" => [-1, -2, 1],
         "grain_density" | "water_density" => [-3, 0, 1],
         "solid_mass" => [dimensions - 3, 0, 1],
         // Of the checks of the start it is a share of the load.

@@ -25,6 +25,8 @@ pub struct Plan<'a> {
     pub steps: Steps,
     /// A mode that grows too far within the run under any explicit step: steps cannot be shares of a limit then.
     pub growing: Option<GrowingMode>,
+    /// One that grows under any explicit step, and stays small within the run as far as it is predicted.
+    pub slowly_growing: Option<GrowingMode>,
     /// Step sizes as far as they are known before the run.
     pub sizes: StepSizes,
     /// Material points, of skeleton and water.
@@ -79,7 +81,8 @@ impl<'a> Plan<'a> {
         let target = schedule.time_step.first(&scales);
         let prediction = prediction.filter(|_| matches!(schedule.time_step, TimeStep::Stable(_)));
         let grows_far = |mode: &GrowingMode| !mode.stays_small_for(end);
-        let growing = prediction.as_ref().and_then(|prediction| prediction.growing).filter(grows_far);
+        let mode = prediction.as_ref().and_then(|prediction| prediction.growing);
+        let growing = mode.filter(grows_far);
         let growth =
             prediction.filter(|_| growing.is_none()).and_then(|found| found.growth_over(end, target));
         let sizes = StepSizes { predicted_critical: critical, target, growth, ..StepSizes::default() };
@@ -91,6 +94,7 @@ impl<'a> Plan<'a> {
         Self {
             steps: schedule.time_step.steps(&scales, &schedule.outputs, most),
             growing,
+            slowly_growing: mode.filter(|_| growing.is_none()),
             sizes,
             points: problem.points.len() + problem.water.as_ref().map_or(0, Points::len),
             nodes: problem.grid.node_count(),

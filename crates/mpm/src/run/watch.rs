@@ -144,14 +144,15 @@ impl<'a> Watch<'a> {
     /// critical one.
     fn unstable(&self, reason: &str, sizes: &StepSizes) -> StepFailure {
         let (step, share) = (sizes.largest, sizes.largest / sizes.predicted_critical);
-        let blame = match self.plan.schedule.integrator.step_bound() {
-            StepBound::AllWaves => {
+        let blame = match (self.plan.schedule.integrator.step_bound(), &self.plan.slowly_growing) {
+            (StepBound::AllWaves, Some(mode)) => format!("; {mode}"),
+            (StepBound::AllWaves, None) => {
                 format!("; the step of {step:.4e} s is {share:.3} of the predicted critical one")
             }
-            StepBound::SkeletonWaves => {
+            (StepBound::SkeletonWaves, _) => {
                 format!("; the largest step is {share:.3} of the predicted critical one")
             }
-            StepBound::Accuracy => String::new(),
+            (StepBound::Accuracy, _) => String::new(),
         };
         StepFailure { kind: FailureKind::Unstable, reason: format!("{reason}{blame}") }
     }
