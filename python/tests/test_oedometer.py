@@ -77,7 +77,7 @@ def test_what_is_wrong_is_a_sentence():
         (lambda: oedometer.exact("terzaghi", 10**400, 0.5), "these are not numbers: int too large"),
         (lambda: oedometer.score("terzaghi", time=[8.0], height=[0.5], pressure=[[math.nan]]), "NaN"),
         (lambda: oedometer.score("terzaghi", time=[8.0], height=[0.5, 0.6], pressure=[[1.0]]), r"\[time\]\[place\]"),
-        (lambda: oedometer.score("terzaghi", time=[8.0], height=[0.5]), "nothing is given"),
+        (lambda: oedometer.score("terzaghi", time=[8.0], height=[0.5]), "there is nothing to score"),
         (lambda: oedometer.score("terzaghi", time=[8.0], height=[7.0], pressure=[[1.0]]), "outside the column"),
         (lambda: oedometer.score("cosine-layer", time=[1.0], height=[0.5], pressure=[1.0]), "give `distance`"),
         (lambda: oedometer.convergence([0.1], [1.0, 2.0]), "1 sizes and 2 errors"),

@@ -22,9 +22,9 @@ const FONT_SCALE: f64 = 1.24;
 
 /// Begin and end of scripts and what follows them, as characters that plotters passes on and their elements.
 const MARKS: [(char, &str); 5] = [
-    ('\u{e000}', "<tspan dy=\"0.28em\" font-size=\"0.72em\">"),
+    ('\u{e000}', "<tspan dy=\"0.28em\" font-size=\"0.76em\">"),
     ('\u{e001}', "<tspan dy=\"-0.202em\">"),
-    ('\u{e002}', "<tspan dy=\"-0.5em\" font-size=\"0.72em\">"),
+    ('\u{e002}', "<tspan dy=\"-0.5em\" font-size=\"0.76em\">"),
     ('\u{e003}', "<tspan dy=\"0.36em\">"),
     ('\u{e004}', "</tspan>"),
 ];
@@ -161,7 +161,7 @@ mod tests {
         let font = Font { size: 12.0, colour: BLACK, is_bold: false };
         let text = |text: &str| layer((99.0, 9.0), |area| write(area, text, (1.0, 2.0), font, HPos::Left));
         let svg = text("<b> T_v & 10⁻³ s").expect("a text");
-        assert!(svg.contains(">&lt;b&gt; T<tspan dy=\"0.28em\" font-size=\"0.72em\">v</tspan>"), "{svg}");
+        assert!(svg.contains(">&lt;b&gt; T<tspan dy=\"0.28em\" font-size=\"0.76em\">v</tspan>"), "{svg}");
         assert!(svg.contains("<tspan dy=\"-0.202em\">\u{a0}&amp; 10</tspan><tspan dy=\"-0.5em\""), "{svg}");
         assert!(svg.contains("<tspan dy=\"0.36em\">\u{a0}s</tspan></text>\n"), "{svg}");
         assert!(svg.contains("font-size=\"120"), "{svg}");
