@@ -32,9 +32,6 @@ const ENOUGH_METHODS: usize = 3;
 /// Methods of a study beside others in the table of a report.
 const MOST_METHODS: usize = 5;
 
-/// Rows of its table there.
-const REPORT_ROWS: usize = 10;
-
 /// Cells of the mesh on which errors are quoted: the paper's.
 const QUOTED_CELLS: usize = 10;
 
@@ -112,9 +109,7 @@ fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
             (*name).clone_into(&mut figure.name);
             figure
         });
-        finding = finding
-            .with(Part::Table(found.table(name).shown(REPORT_ROWS)))
-            .with(Part::Figures(drawn.collect()));
+        finding = finding.with(Part::Table(found.table(name))).with(Part::Figures(drawn.collect()));
     }
     Ok(Some(finding))
 }

@@ -5,6 +5,9 @@ use crate::questions::finding::{Finding, Part, Place};
 use crate::render::RenderError;
 use crate::render::page::{Block, Figure, Section, slug};
 
+/// Rows of a table that has a file, on the page of a report: three errors of three methods.
+const REPORT_ROWS: usize = 9;
+
 /// The section of an answer.
 ///
 /// # Errors
@@ -40,6 +43,9 @@ fn parts_as_blocks(finding: &Finding, parts: &[Part], place: Place) -> Result<Ve
     let block = |part: &Part| {
         Ok(match part {
             Part::Sentence(template) => Block::Paragraph(finding.words(template)?),
+            Part::Table(table) if place == Place::Report && table.file.is_some() => {
+                Block::Table(table.clone().shown(REPORT_ROWS))
+            }
             Part::Table(table) => Block::Table(table.clone()),
             Part::Figures(figures) => Block::Figures(figures.iter().map(named).collect()),
             Part::Views(views) => {
