@@ -108,6 +108,7 @@ impl<'a> CaseRunner<'a> {
     ) -> Result<Outcome, ExactError> {
         let Some(other) = self.other(case) else { return self.this_program.solve(case, &course) };
         let place = store.map(|store| store.folder_of(&case.hash()));
+        let _at_work = stop::begin();
         // It has a process group of its own, which no signal to this program reaches: from now on they are taken, and
         // end it with all that it has started. Where the system refuses, they do what they did.
         let _ = stop::heed_signals();
@@ -195,6 +196,7 @@ pub fn time_study(
     store: Option<&RecordStore>,
     tell: &(dyn Fn(Progress) + Sync),
 ) -> Result<(), RunError> {
+    let _at_work = stop::begin();
     let runner = CaseRunner::of(study);
     let mut timed_ones = BTreeSet::new();
     for _ in 0..study.timing_repeats {

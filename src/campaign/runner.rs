@@ -87,6 +87,7 @@ pub fn run_studies_thinned(
     if let Some(reports) = refused_as_endless(studies, options) {
         return reports;
     }
+    let _at_work = stop::begin();
     let selected = cases_of(studies, options);
     let runners: Vec<CaseRunner<'_>> =
         studies.iter().map(|campaign| CaseRunner::of(campaign.study)).collect();

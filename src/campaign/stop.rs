@@ -2,10 +2,11 @@
 //!
 //! Ctrl-C, Ctrl-\ and a closed terminal end at once what is at work, with all processes that it has started; what is
 //! finished is kept. A second Ctrl-C ends this program where it stands. SIGTERM lets what is at work come
-//! to its end for a while.
+//! to its end for a while. A signal ends the runs at work and none that begins after them; where none is at work it does
+//! what it did without this program.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, LazyLock, OnceLock};
+use std::sync::{Arc, LazyLock, Mutex, MutexGuard, OnceLock};
 use std::time::{Duration, Instant};
 
 /// Time that the cases at work have to come to their ends after SIGTERM: schedulers kill half a minute after it
@@ -15,11 +16,44 @@ const GRACE: Duration = Duration::from_secs(15);
 /// Whether SIGTERM came.
 static ASKED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 /// When it was first seen.
-static SINCE: OnceLock<Instant> = OnceLock::new();
+static SINCE: Mutex<Option<Instant>> = Mutex::new(None);
+/// Runs at work.
+static AT_WORK: Mutex<usize> = Mutex::new(0);
+/// Whether there are none.
+static IDLE: LazyLock<Arc<AtomicBool>> = LazyLock::new(|| Arc::new(AtomicBool::new(true)));
 /// Whether Ctrl-C came, or the terminal was closed.
 static AT_ONCE: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
-/// From now on signals ask the run to end instead of ending the program. Calling it again changes nothing.
+/// A run at work, as long as it is held.
+#[must_use = "a run is at work as long as this is held"]
+pub struct AtWork(());
+
+/// A run begins: the first of several forgets the signals that ended those before it.
+pub fn begin() -> AtWork {
+    let mut runs = lock(&AT_WORK);
+    if *runs == 0 {
+        ASKED.store(false, Ordering::Relaxed);
+        AT_ONCE.store(false, Ordering::Relaxed);
+        *lock(&SINCE) = None;
+        IDLE.store(false, Ordering::Relaxed);
+    }
+    *runs += 1;
+    AtWork(())
+}
+
+impl Drop for AtWork {
+    fn drop(&mut self) {
+        let mut runs = lock(&AT_WORK);
+        *runs -= 1;
+        IDLE.store(*runs == 0, Ordering::Relaxed);
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}
+
+/// From now on signals ask the runs at work to end instead of ending the program. Calling it again changes nothing.
 ///
 /// # Errors
 /// When the system does not let signals be handled.
@@ -28,8 +62,11 @@ pub fn heed_signals() -> std::io::Result<()> {
     if HEEDED.set(()).is_err() {
         return Ok(());
     }
-    signal_hook::flag::register(signal_hook::consts::SIGTERM, Arc::clone(&ASKED))?;
+    let term = signal_hook::consts::SIGTERM;
+    signal_hook::flag::register_conditional_default(term, Arc::clone(&IDLE))?;
+    signal_hook::flag::register(term, Arc::clone(&ASKED))?;
     for signal in end_at_once() {
+        signal_hook::flag::register_conditional_default(signal, Arc::clone(&IDLE))?;
         // Run before the flag is set: the first signal passes it, the second does what it did without.
         signal_hook::flag::register_conditional_default(signal, Arc::clone(&AT_ONCE))?;
         signal_hook::flag::register(signal, Arc::clone(&AT_ONCE))?;
@@ -62,7 +99,7 @@ fn ignored_signals() -> u64 {
 pub fn is_asked() -> bool {
     let is_asked = ASKED.load(Ordering::Relaxed);
     if is_asked {
-        SINCE.get_or_init(Instant::now);
+        lock(&SINCE).get_or_insert_with(Instant::now);
     }
     is_asked || AT_ONCE.load(Ordering::Relaxed)
 }
@@ -70,5 +107,5 @@ pub fn is_asked() -> bool {
 /// Whether the cases at work have had their time too, and are dropped.
 pub fn is_over() -> bool {
     is_asked()
-        && (AT_ONCE.load(Ordering::Relaxed) || SINCE.get().is_some_and(|since| since.elapsed() > GRACE))
+        && (AT_ONCE.load(Ordering::Relaxed) || lock(&SINCE).is_some_and(|since| since.elapsed() > GRACE))
 }

@@ -87,6 +87,7 @@ pub fn main() -> ExitCode {
 
 /// Runs the command of a command line, the program's name first, and returns the exit code.
 pub fn main_with(words: impl IntoIterator<Item = std::ffi::OsString>) -> u8 {
+    let _at_work = crate::campaign::stop::begin();
     let parsed =
         command().try_get_matches_from(words).and_then(|matches| Arguments::from_arg_matches(&matches));
     let arguments = match parsed {
