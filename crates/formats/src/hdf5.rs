@@ -8,7 +8,7 @@ use crate::frame::{Array, Association, Frame, PLACES, Wanted};
 use crate::{exodus, input_file, pflotran, vtkhdf};
 use hdf5_pure::{ChunkCacheConfig, Dataset, Datatype, DatatypeByteOrder, File, FileAccessProperties, Group};
 use std::collections::HashMap;
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
 /// Data sets that list the times.
 const TIMES: [&str; 2] = ["times", "time"];
@@ -34,6 +34,7 @@ enum Layout {
 
 /// An open file.
 pub(crate) struct Store {
+    path: PathBuf,
     layout: Layout,
     sets: Vec<Listed>,
     /// Places in the list by path.
@@ -61,6 +62,7 @@ impl Store {
         let access = FileAccessProperties::new().with_chunk_cache(pieces);
         let file = File::from_bytes_with_options(bytes, access).map_err(|error| damaged(&error))?;
         let mut store = Self {
+            path: path.to_owned(),
             layout: Layout::Plain,
             sets: Vec::new(),
             by_path: HashMap::new(),
@@ -184,44 +186,73 @@ impl Store {
             if self.records(number, wanted, &mut frame)? {
                 continue;
             }
-            let Listed { path, shape, set } = &self.sets[number];
-            let (path, shape) = (path.clone(), shape.clone());
-            let is_number = set.datatype().is_ok_and(|kind| scalar_of(&kind).is_some());
-            let is_time = is_named(&path, &TIMES);
-            if !is_number {
-                continue;
-            }
-            let count = |length: u64| {
-                usize::try_from(length).map_err(|_| "it declares more than it can hold".to_owned())
-            };
-            let shape = shape.into_iter().map(count).collect::<Result<Vec<usize>, String>>()?;
-            let too_much = || "its shape is larger than any file".to_owned();
-            let components = shape.iter().skip(1).try_fold(1_usize, |all, axis| all.checked_mul(*axis));
-            let is_place = is_named(&path, &PLACES);
-            let mut array = Array {
-                on: if shape.is_empty() { Association::Whole } else { Association::Points },
-                components: components.ok_or_else(too_much)?.max(1),
-                tuples: shape.first().copied().unwrap_or(1),
-                values: Vec::new(),
-                name: path,
-                shape,
-            };
-            if is_time || is_place || wanted.has(&array.name) {
-                let Packing { unit, fill, .. } = Packing::of(&self.sets[number].set);
-                frame.units.extend(unit.map(|unit| (array.name.clone(), unit)));
-                frame.fills.extend(fill.map(|fill| (array.name.clone(), fill)));
-                array.values = self.numbers(&array.name, None)?;
+            let path = self.sets[number].path.clone();
+            let Some(mut array) = self.array_of(number, path)? else { continue };
+            let is_time = is_named(&array.name, &TIMES);
+            if is_time || is_named(&array.name, &PLACES) || wanted.has(&array.name) {
+                self.read_into(number, &mut array, &mut frame)?;
             }
             if is_time && frame.times.is_empty() {
                 frame.times.clone_from(&array.values);
             }
             frame.arrays.push(array);
         }
+        self.follow_links(wanted, &mut frame)?;
         if frame.arrays.is_empty() {
             return Err("it has no numbers".to_owned());
         }
         frame.place_from_array();
         Ok(frame)
+    }
+
+    /// A data set as an array of a name, without its values; none where it has no numbers.
+    fn array_of(&self, number: usize, name: String) -> Result<Option<Array>, String> {
+        let Listed { shape, set, .. } = &self.sets[number];
+        if set.datatype().map_or(true, |kind| scalar_of(&kind).is_none()) {
+            return Ok(None);
+        }
+        let count = |length: &u64| {
+            usize::try_from(*length).map_err(|_| "it declares more than it can hold".to_owned())
+        };
+        let shape = shape.iter().map(count).collect::<Result<Vec<usize>, String>>()?;
+        let too_much = || "its shape is larger than any file".to_owned();
+        let components = shape.iter().skip(1).try_fold(1_usize, |all, axis| all.checked_mul(*axis));
+        Ok(Some(Array {
+            on: if shape.is_empty() { Association::Whole } else { Association::Points },
+            components: components.ok_or_else(too_much)?.max(1),
+            tuples: shape.first().copied().unwrap_or(1),
+            values: Vec::new(),
+            name,
+            shape,
+        }))
+    }
+
+    /// Reads the values of a data set into its array, and into a state what is said of them.
+    fn read_into(&mut self, number: usize, array: &mut Array, frame: &mut Frame) -> Result<(), String> {
+        let Packing { unit, fill, .. } = Packing::of(&self.sets[number].set);
+        frame.units.extend(unit.map(|unit| (array.name.clone(), unit)));
+        frame.fills.extend(fill.map(|fill| (array.name.clone(), fill)));
+        let path = self.sets[number].path.clone();
+        array.values = self.numbers(&path, None)?;
+        Ok(())
+    }
+
+    /// Adds the wanted arrays that are links to files in the folder of this one, or below it.
+    fn follow_links(&self, wanted: Wanted, frame: &mut Frame) -> Result<(), String> {
+        for name in wanted.0.iter().filter(|name| !self.sets.iter().any(|set| is_named_as(&set.path, name))) {
+            let link = name.rsplit('/').next().and_then(|name| linked(&self.path, name));
+            let Some((file, path)) = link.filter(|(file, _)| is_below(file)) else { continue };
+            let named = |why: String| format!("`{name}` is a link to `{path}` of {file}: {why}");
+            let folder = self.path.parent().unwrap_or(Path::new(""));
+            let mut other = Self::open(&folder.join(&file)).map_err(named)?;
+            let number = other.by_path.get(path.trim_matches('/')).copied();
+            let number = number.ok_or_else(|| named("it does not have it".to_owned()))?;
+            if let Some(mut array) = other.array_of(number, name.clone()).map_err(named)? {
+                other.read_into(number, &mut array, frame).map_err(named)?;
+                frame.arrays.push(array);
+            }
+        }
+        Ok(())
     }
 
     /// Adds the columns of a table of records; false if the set is not a table.
@@ -352,8 +383,17 @@ fn damaged(error: &hdf5_pure::Error) -> String {
     format!("its HDF5 is damaged: {told}")
 }
 
-/// The file and path that an array of a name is linked to, where an HDF5 has such a link instead of the array: links to other
-/// files are not followed. Format: "HDF5 file format specification", IV.A.2.g, the link message.
+/// Whether a path is that of a data set, or ends as it does.
+fn is_named_as(path: &str, name: &str) -> bool {
+    path == name || path.ends_with(&format!("/{name}"))
+}
+
+/// Whether a file that is linked lies in the folder of the one with the link, or below it: no result reads elsewhere.
+fn is_below(file: &str) -> bool {
+    Path::new(file).components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
+}
+
+/// The file and path that an array of a name is linked to, where an HDF5 has such a link instead of the array. Format: "HDF5 file format specification", IV.A.2.g, the link message.
 pub fn linked(file: &Path, name: &str) -> Option<(String, String)> {
     let bytes = input_file::read(file).ok()?;
     let length = u8::try_from(name.len()).ok().filter(|length| *length > 0)?;
@@ -426,6 +466,40 @@ mod tests {
         assert!((p[0], p[2]) == (57.0, 157.0) && p[1].is_nan() && q == [100.0, -999.0], "{p:?} {q:?}");
         assert_eq!(frame.units.get("p").map(String::as_str), Some("kPa"));
         assert_eq!((frame.fills.get("p"), frame.fills.len(), frame.units.len()), (Some(&-999.0), 1, 1));
+    }
+
+    #[test]
+    fn a_link_is_followed_to_files_beside_the_one_that_has_it_and_no_others() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let path = folder.path().join("a.h5");
+        let mut builder = FileBuilder::new();
+        builder.create_dataset("t").with_f64_data(&[1.0, 2.0]).with_shape(&[2]);
+        builder.write(&path).expect("a file");
+        let sound = std::fs::read(&path).expect("a file");
+        let mut source = FileBuilder::new();
+        let set = source.create_dataset("q").with_i16_data(&[3, 4]).with_shape(&[2]);
+        set.set_attr("scale_factor", AttrValue::F64(0.5));
+        std::fs::create_dir(folder.path().join("below")).expect("a folder");
+        let names = BTreeSet::from(["p".to_owned()]);
+        let read = |target: &str, to: &str| -> Result<Option<Vec<f64>>, String> {
+            // The link message as h5py writes it: name, length, and what is linked.
+            let value = [b"\0", target.as_bytes(), b"\0", to.as_bytes(), b"\0"].concat();
+            let length = u16::try_from(value.len()).expect("short").to_le_bytes();
+            let link = [&[1, b'p'][..], &length, &value].concat();
+            std::fs::write(&path, [&sound[..], &link].concat()).expect("a file");
+            let frame = Store::open(&path)?.frame(0, Wanted(&names))?;
+            Ok(frame.array("p", None).map(|array| array.values.clone()))
+        };
+        assert!(read("b.h5", "/q").is_err_and(|why| why.contains("`p` is a link to `/q` of b.h5")));
+        source.write(folder.path().join("b.h5")).expect("a file");
+        std::fs::copy(folder.path().join("b.h5"), folder.path().join("below/b.h5")).expect("a file");
+        for beside in ["b.h5", "./b.h5", "below/b.h5"] {
+            assert_eq!(read(beside, "/q"), Ok(Some(vec![1.5, 2.0])), "{beside}");
+        }
+        for elsewhere in ["../b.h5", "/b.h5"] {
+            assert_eq!(read(elsewhere, "/q"), Ok(None), "{elsewhere}");
+        }
+        assert!(read("b.h5", "/r").is_err_and(|why| why.contains("does not have it")));
     }
 
     #[test]

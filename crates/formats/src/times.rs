@@ -36,6 +36,8 @@ enum Over {
     Row,
     /// Along this axis; the places are along the other one, if there is one.
     Axis(usize),
+    /// As [`Self::Axis`], or at all times alike, with components before the places.
+    ComponentsFirst(Option<usize>),
     /// Each row has its own time.
     Rows,
 }
@@ -148,15 +150,20 @@ fn axis_of(array: &Array, usage: &Use, count: usize, places: Option<usize>) -> R
     let axes = array.axes();
     let name = &array.name;
     if let Some(names) = &usage.axes {
-        let place = names.iter().position(|axis| *axis == Axis::Time);
-        let Some(place) = place else { return Ok(Over::Same) };
+        let of = |is_meant: fn(&Axis) -> bool| names.iter().position(is_meant);
+        let component = of(|axis| matches!(axis, Axis::Component(_)));
+        let is_first =
+            component.is_some_and(|at| of(|axis| *axis == Axis::Place).is_some_and(|place| at < place));
+        let Some(place) = of(|axis| *axis == Axis::Time) else {
+            return Ok(if is_first { Over::ComponentsFirst(None) } else { Over::Same });
+        };
         if trimmed(&axes).len() > names.len() || axes.get(place) != Some(&count) {
             return Err(format!(
                 "`{name}` has the shape {}, which is not what the mapping says for {count} times",
                 shape_told(&axes)
             ));
         }
-        return Ok(Over::Axis(place));
+        return Ok(if is_first { Over::ComponentsFirst(Some(place)) } else { Over::Axis(place) });
     }
     if array.on == Association::Whole {
         return Ok(Over::Same);
@@ -189,10 +196,17 @@ fn axis_of(array: &Array, usage: &Use, count: usize, places: Option<usize>) -> R
              `{name}[node, time]`",
             shape_told(&axes)
         )),
-        (_, true) if count > 1 => Err(format!(
-            "`{name}` has the shape {}, and there are {count} times: no axis has their number",
-            shape_told(&axes)
-        )),
+        (_, true) if count > 1 => {
+            let later = lengths.iter().rposition(|axis| *axis == count).filter(|axis| *axis > 0);
+            let why = match later {
+                Some(axis) if lengths.len() > 2 || usage.has_component => format!(
+                    "their number is that of axis {}: say which axis is which, like `{name}[1, node, time]`",
+                    axis + 1
+                ),
+                _ => "no axis has their number".to_owned(),
+            };
+            Err(format!("`{name}` has the shape {}, and there are {count} times: {why}", shape_told(&axes)))
+        }
         _ => Ok(Over::Same),
     }
 }
@@ -230,6 +244,8 @@ impl States<'_> {
             let over = self.over.iter().find(|(known, _)| std::ptr::eq(*known, array));
             frame.arrays.push(match over {
                 Some((_, Over::Axis(axis))) => at_time(array, *axis, place),
+                Some((_, Over::ComponentsFirst(Some(axis)))) => places_first(at_time(array, *axis, place)),
+                Some((_, Over::ComponentsFirst(None))) => places_first(array.clone()),
                 Some((_, Over::Row)) => at_time(array, 0, 0),
                 Some((_, Over::Rows)) => of_rows(array, rows),
                 _ => array.clone(),
@@ -253,6 +269,14 @@ fn of_rows(array: &Array, rows: &[usize]) -> Array {
         name: array.name.clone(),
         ..*array
     }
+}
+
+/// An array of `[component][place]` as `[place][component]`.
+fn places_first(array: Array) -> Array {
+    let (components, tuples) = (array.tuples, array.components);
+    let value = |at: usize| array.values.get(at % components * tuples + at / components).copied();
+    let values = (0..array.values.len()).filter_map(value).collect();
+    Array { values, tuples, components, shape: Vec::new(), ..array }
 }
 
 /// An array at one place of its axis of times: `[place][component]`.
@@ -350,6 +374,20 @@ mod tests {
         for shape in [&[3][..], &[3, 4], &[1]] {
             let none = told(&[3], shape, &two, &quantity());
             assert!(none.as_ref().is_err_and(|why| why.contains("there are 2 times")), "{none:?}");
+        }
+        // Components before the places: of two components at three places and two times.
+        let axes = [Axis::Component(1), Axis::Place, Axis::Time];
+        let turned = told(&[3], &[2, 3, 2], &two, &said(&axes)).expect("said");
+        assert_eq!(turned[1], first(&[0.0, 1.0, 2.0], &[1.0, 7.0, 3.0, 9.0, 5.0, 11.0]));
+        let constant = told(&[3], &[2, 3], &two, &said(&axes[..2])).expect("said");
+        assert_eq!(constant[0][1], [0.0, 3.0, 1.0, 4.0, 2.0, 5.0]);
+        let component = Use { has_component: true, ..quantity() };
+        for (shape, component) in [(&[2, 9, 3][..], &component), (&[4, 9, 3], &quantity())] {
+            let asked = told(&[9], shape, &[1.0, 2.0, 3.0], component);
+            let is_asked = |why: &String| {
+                why.contains("that of axis 3: say which axis is which, like `p[1, node, time]`")
+            };
+            assert!(asked.as_ref().is_err_and(is_asked), "{asked:?}");
         }
         let wrong = told(&[3], &[3, 2], &two, &said(&[Axis::Time, Axis::Place]));
         assert!(wrong.is_err_and(|why| why.contains("3 x 2")));

@@ -399,7 +399,7 @@ impl<'a> FrameRows<'a> {
         let link = spellings(typed).find_map(|spelled| linked(self.path, spelled.name.rsplit('/').next()?));
         if let Some((file, path)) = link {
             return Err(self.refused(format!(
-                "`{typed}` is a link to `{path}` of {file}, and links to other files are not followed: score a file that has the \
+                "`{typed}` is a link to `{path}` of {file}, which does not lie beside it: score a file that has the \
                  numbers, as h5repack or `f[\"{typed}\"][:]` of h5py gives them"
             )));
         }
