@@ -29,8 +29,7 @@ const SHIFTED: f64 = 2.0;
 const OUT_OF_BALANCE: f64 = 1.0;
 /// Bound on the residual of the equilibrium where points move. In 400 random runs at 15 to 50 % strain the pressures beyond it
 /// were 3 % of the load off, or more; of linear shape functions, whose stresses jump as points cross cells, the settlement was 10 % off.
-/// Of other programs, whose stresses and pressures may belong to different places, four times that.
-const OUT_OF_BALANCE_MOVING: [f64; 2] = [0.1, 0.4];
+const OUT_OF_BALANCE_MOVING: f64 = 0.1;
 /// Wave time over consolidation time up to which a column is in balance except for its first waves.
 const LITTLE_INERTIA: f64 = 1e-3;
 /// Why the points of a moving plane and of two point sets are not judged.
@@ -265,9 +264,7 @@ fn equilibrium_bound(record: &Record) -> Result<f64, &'static str> {
         } else {
             None
         };
-        let bound =
-            OUT_OF_BALANCE_MOVING[usize::from(case.method.built_in().is_none())] + SHIFTED * shift(record);
-        return unjudged.map_or(Ok(bound), Err);
+        return unjudged.map_or(Ok(OUT_OF_BALANCE_MOVING + SHIFTED * shift(record)), Err);
     }
     if case.scene.body != Body::Column && case.integrator == IntegratorKind::Implicit {
         // The residual of the nodes, which the solver balances.

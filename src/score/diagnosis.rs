@@ -29,6 +29,8 @@ const SAMPLES: [usize; 2] = [5000, 16];
 const UNEVEN_TOP: f64 = 0.02;
 /// Relative distance of times that stand for one.
 const SAME_TIME: f64 = 1e-6;
+/// Words of a sentence about several runs.
+pub const SEVERAL_RUNS: &str = "runs in one file";
 /// Words of a question about one column, where the others match.
 const ONLY: &str = "and only it: ";
 /// Error up to which a column matches.
@@ -116,7 +118,7 @@ impl Scene<'_> {
         let sentences: Vec<String> = runs.iter().enumerate().map(of).collect();
         let count = runs.len();
         format!(
-            "there are {count} runs in one file, with other values at the same times: {}: was a second run appended?",
+            "there are {count} {SEVERAL_RUNS}, with other values at the same times: {}: was a second run appended?",
             sentences.join("; ")
         )
     }

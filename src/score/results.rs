@@ -11,7 +11,7 @@ use crate::import::{SampledState, not_ended};
 use crate::measure::round_off::SINGLE_PRECISION;
 use crate::record::ErrorRow;
 use crate::score::completeness::{Finding, Lack, Whole, interior_zeros, missing_times, uneven_meshes};
-use crate::score::diagnosis::diagnosis;
+use crate::score::diagnosis::{SEVERAL_RUNS, diagnosis};
 use crate::score::score_series::{ScoredSeries, TimeGroups, series_of, time_factors};
 use crate::score::{Score, score};
 use crate::study::overrides::Asked;
@@ -296,7 +296,12 @@ impl Scored {
             self.run.notes.extend(whole.profiles(states));
             let are_nodes = held.mapping.sample == Sample::Nodes;
             self.score.not_judged.extend(whole.end_without_sample(states, are_nodes));
-            self.score.diagnosis = diagnosis(parameters, *reference, states, held.mapping)?;
+            let told = diagnosis(parameters, *reference, states, held.mapping)?;
+            let are_runs = told.iter().any(|sentence| sentence.contains(SEVERAL_RUNS));
+            // Of a mixture nothing else is explained.
+            let mixture = self.run.contradictions.first().filter(|_| !are_runs);
+            self.score.diagnosis =
+                mixture.map_or(told, |why| vec![format!("{why}: was a second run appended?")]);
         }
         self.note_absences(held.case);
         Ok(())
