@@ -132,10 +132,13 @@ fn row(
     is_within: bool,
     shared: Option<&str>,
 ) -> Vec<Cell> {
-    let method = match &*choice.integrator {
+    let mut method = match &*choice.integrator {
         own if own.is_empty() || shared == Some(own) => choice.method.clone(),
         integrator => format!("{}, {integrator}", choice.method),
     };
+    if choice.has_other_points {
+        method += &format!(", {} per cell", choice.points_per_cell);
+    }
     let step = match choice.largest_step {
         step if step <= 0.0 => Cell::missing("another program's"),
         step if choice.is_longest_tried => format!("≥ {}", duration(step)).into(),
@@ -295,8 +298,9 @@ pub struct WithinFinding {
     pub integrator: String,
     /// Cells over the height.
     pub cells: usize,
-    /// Points in a cell.
+    /// Points in a cell, and whether there are runs of the same method and integrator with others.
     pub points_per_cell: usize,
+    pub has_other_points: bool,
     /// Rule of its steps, `growth=0.02`; empty where another program solved.
     pub step_rule: String,
     /// Largest step of the run with the largest error, s; 0 where another program solved.
@@ -361,8 +365,12 @@ fn quantity_within(
             let all = runs.iter().map(|record| Some((*record, largest(record)?)));
             let all: Vec<(&Record, ErrorRow)> = all.collect::<Option<_>>()?;
             let (record, row) = all.into_iter().max_by(|a, b| a.1.value.abs().total_cmp(&b.1.value.abs()))?;
-            let longest = is_longest_tried(record, records);
-            Some((WithinFinding { is_longest_tried: longest, ..WithinFinding::new(record, &row) }, runs))
+            let found = WithinFinding {
+                is_longest_tried: is_longest_tried(record, records),
+                has_other_points: has_other_points(record, records),
+                ..WithinFinding::new(record, &row)
+            };
+            Some((found, runs))
         })
         .collect();
     let quoted =
@@ -451,6 +459,7 @@ impl WithinFinding {
             step_rule: here(case.time_step.to_string()),
             cells: case.cells,
             points_per_cell: case.points_per_cell,
+            has_other_points: false,
             largest_step: if case.counts_work() { record.step_sizes.largest } else { 0.0 },
             is_longest_tried: false,
             is_confirmed: false,
@@ -462,6 +471,13 @@ impl WithinFinding {
             case: record.hash.clone(),
         }
     }
+}
+
+/// Whether a run of the same method and integrator has other points in a cell.
+fn has_other_points(record: &Record, records: &[Record]) -> bool {
+    let solver = |record: &Record| (record.case.method.to_string(), record.case.integrator.name());
+    let mut alike = records.iter().filter(|other| solver(other) == solver(record));
+    alike.any(|other| other.case.points_per_cell != record.case.points_per_cell)
 }
 
 /// Whether no run of the same method and integrator on the same mesh of the same problem took larger steps.
@@ -646,6 +662,20 @@ mod tests {
             assert!(all.len() == 2 && all.contains(&"MPM") && all.contains(&"GIMP"), "{all:?}");
             assert_eq!((choice.is_longest_tried, answer.problems), (is_longest, 1));
             assert_eq!((promille.choice.as_ref(), promille.others.len()), (None, 0));
+        }
+    }
+
+    #[test]
+    fn a_row_names_the_points_in_a_cell_where_runs_of_its_method_have_others() {
+        for (points, told) in [("[2]", "MPM"), ("[2, 3]", "MPM, 2 per cell"), ("[3, 2]", "MPM, 2 per cell")] {
+            let text = format!(
+                "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+                 integrator = ['implicit']\ncells = [4, 8]\npoints_per_cell = {points}\n"
+            );
+            let (study, mut records) = solved("s", &text);
+            records.iter_mut().flat_map(|record| &mut record.errors).for_each(|row| row.value = 1e-4);
+            let row = table(&within(&study, &records)).rows.remove(0);
+            assert_eq!(row[2].show(), told, "{points}");
         }
     }
 
