@@ -1,6 +1,7 @@
 //! `oedometer stability`: the critical step of a case, predicted and observed.
 
 use crate::campaign::runner::{RunOptions, run_study};
+use crate::case::Case;
 use crate::case::planned::Tier;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{SolveFormat, csv_of, json_of, print_data, table_width};
@@ -91,8 +92,35 @@ fn end_of(records: &[Record]) -> anyhow::Result<Exit> {
     if let Some((record, sentence)) = unknown {
         return Err(Ended::with(Exit::VerdictFailed, format!("{}: {sentence}", record.case.label())));
     }
-    let agree = records.iter().filter_map(|record| record.stability.as_ref()).all(agrees);
-    Ok(if agree { Exit::Pass } else { Exit::VerdictFailed })
+    let contradicts = records.iter().find_map(|record| {
+        let found = record.stability.as_ref().filter(|found| !agrees(found))?;
+        Some(contradiction(&record.case, found))
+    });
+    contradicts.map_or(Ok(Exit::Pass), |sentence| Err(Ended::with(Exit::VerdictFailed, sentence)))
+}
+
+/// Says how far the predicted step is from those that run, and which share of it does.
+fn contradiction(case: &Case, found: &CriticalStep) -> String {
+    let label = case.label_without_step();
+    let Some(share) = found.observed.map(|observed| observed / found.predicted) else {
+        return format!("{label}: no run near the predicted step shows a limit");
+    };
+    if share >= 1.0 - AGREEMENT {
+        let at =
+            found.probes.iter().find(|probe| !probe.is_as_predicted()).map_or(share, |probe| probe.share);
+        return format!("{label}: the run at {at} of the predicted step does not do what is predicted");
+    }
+    let why = if case.configuration().moves_points() {
+        "points cross cells, and the prediction is for points where they stand at the start: "
+    } else {
+        ""
+    };
+    // Rounded down: a share that runs.
+    let safe = (95.0 * share).floor() / 100.0;
+    format!(
+        "{label}: {why}runs end up to {share:.2} of the predicted step, so `solve` with `--time-step stable={safe}` runs to \
+         its end"
+    )
 }
 
 fn agrees(critical: &CriticalStep) -> bool {
@@ -207,7 +235,11 @@ mod tests {
             let mut records = all.clone();
             let label = records[place].case.label();
             records[place].stability = Some(found(Some(1.0)));
-            assert_eq!(told(&records), Ok(Exit::VerdictFailed), "{place}");
+            let half = format!(
+                "{}: runs end up to 0.50 of the predicted step, so `solve` with `--time-step stable=0.47` runs to its end",
+                records[place].case.label_without_step()
+            );
+            assert_eq!(told(&records), Err((Exit::VerdictFailed, half)), "{place}");
             let unknown = Some("no limit".to_owned());
             records[place].stability = Some(CriticalStep { unknown, ..found(None) });
             assert_eq!(told(&records), Err((Exit::VerdictFailed, format!("{label}: no limit"))));

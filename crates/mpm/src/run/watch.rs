@@ -147,7 +147,13 @@ impl<'a> Watch<'a> {
         let blame = match (self.plan.schedule.integrator.step_bound(), &self.plan.slowly_growing) {
             (StepBound::AllWaves, Some(mode)) => format!("; {mode}"),
             (StepBound::AllWaves, None) => {
-                format!("; the step of {step:.4e} s is {share:.3} of the predicted critical one")
+                let crossing = if self.plan.moves_points && share < 1.0 {
+                    ", for points where they stand at the start: as they cross cells smaller steps are critical, which \
+                     `oedometer stability` observes"
+                } else {
+                    ""
+                };
+                format!("; the step of {step:.4e} s is {share:.3} of the predicted critical one{crossing}")
             }
             (StepBound::SkeletonWaves, _) => {
                 format!("; the largest step is {share:.3} of the predicted critical one")
