@@ -78,6 +78,7 @@ fn implicit_step<const C: usize>(bencher: Bencher, method: &str) {
         critical_step: None,
         outputs: Vec::new(),
         history: Vec::new(),
+        notes_energy: false,
         time_step: TimeStep::Seconds(0.01),
         settings: ExplicitSettings::default(),
         kernel: StepKernel::Fastest,

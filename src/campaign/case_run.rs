@@ -14,7 +14,7 @@ use oedometer_mpm::run::observed::Stopped;
 use oedometer_mpm::run::{Kernel, Schedule};
 use oedometer_mpm::time_limit::TimeLimit;
 use oedometer_problem::critical_step::CriticalStep;
-use oedometer_problem::integrator::StepBound;
+use oedometer_problem::integrator::{Formulation, StepBound};
 use oedometer_problem::method::Method;
 use oedometer_problem::outcome::{self, Counters, Failure, FailureKind, RunStatus, StepSizes};
 use oedometer_problem::problem::StartError;
@@ -28,6 +28,8 @@ use std::time::Instant;
 
 /// Points of the settlement curve of a run.
 const HISTORY_POINTS: usize = 48;
+/// The same where waves run.
+const WAVE_POINTS: usize = 96;
 /// First time factor of the settlement curve.
 const HISTORY_START: f64 = 1e-3;
 
@@ -217,7 +219,12 @@ impl ThisProgram {
     fn schedule(self, case: &Case, course: &Course<'_>, time_limit: TimeLimit) -> Schedule {
         let parameters = column_parameters(&case.column, &case.material);
         let end = case.time_factors.last().copied().unwrap_or(0.0);
-        let history = if end > HISTORY_START {
+        let notes_energy = case.scene.waves && case.formulation != Formulation::QuasiStatic;
+        let history = if notes_energy {
+            // A wave is as fast at its end.
+            let place = |i: usize| end * (i + 1) as f64 / WAVE_POINTS as f64;
+            (0..WAVE_POINTS).map(|i| parameters.time(place(i))).filter(|time| *time > 0.0).collect()
+        } else if end > HISTORY_START {
             let growth = elementary::ln(end / HISTORY_START) / (HISTORY_POINTS - 1) as f64;
             (0..HISTORY_POINTS)
                 .map(|i| parameters.time(HISTORY_START * elementary::exp(growth * i as f64)))
@@ -228,6 +235,7 @@ impl ThisProgram {
         Schedule {
             outputs: case.time_factors.iter().map(|factor| parameters.time(*factor)).collect(),
             history,
+            notes_energy,
             time_step: case.time_step,
             settings: case.settings,
             kernel: self.kernel,

@@ -125,7 +125,12 @@ mod tests {
     fn curve() -> Vec<HistoryRow> {
         let row = |step: i32| {
             let time_factor = 0.01 * 2_f64.powi(step);
-            HistoryRow { time_factor, degree_of_consolidation: time_factor.sqrt(), load_factor: None }
+            HistoryRow {
+                time_factor,
+                degree_of_consolidation: time_factor.sqrt(),
+                load_factor: None,
+                energy: None,
+            }
         };
         (0..7).map(row).collect()
     }

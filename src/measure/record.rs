@@ -12,7 +12,7 @@ use crate::record::{
     AttachedRun, Balance, ErrorRow, HistoryRow, Provenance, Record, ReferenceUse, SCHEMA, Status,
 };
 use oedometer_exact::{ExactError, Reference, ReferenceKind};
-use oedometer_problem::outcome::{Counters, HistoryPoint, StepSizes};
+use oedometer_problem::outcome::{Counters, Energy, HistoryPoint, StepSizes};
 use oedometer_problem::snapshot::Snapshot;
 use oedometer_scenes::column::column_parameters;
 use std::sync::Arc;
@@ -66,8 +66,9 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
         return Ok(Record { stability: critical_step, ..record });
     }
     let parameters = column_parameters(&case.column, &case.material);
-    let point =
-        |point: &HistoryPoint| (parameters.time_factor(point.time), point.settlement, point.plate_force);
+    let point = |point: &HistoryPoint| {
+        (parameters.time_factor(point.time), point.settlement, point.plate_force, point.energy)
+    };
     let results = Results {
         times: case.time_factors.to_vec(),
         curve: history.iter().map(point).collect(),
@@ -82,17 +83,22 @@ fn results_outside(case: &Case, snapshots: Vec<Snapshot>) -> Results<'static> {
     let parameters = column_parameters(&case.column, &case.material);
     let times: Vec<f64> = snapshots.iter().map(|snapshot| parameters.time_factor(snapshot.time)).collect();
     let settled = snapshots.iter().map(|snapshot| (snapshot.settlement, snapshot.plate_force));
-    let curve =
-        times.iter().zip(settled).map(|(time, (settlement, force))| (*time, settlement, force)).collect();
+    let curve = times
+        .iter()
+        .zip(settled)
+        .map(|(time, (settlement, force))| (*time, settlement, force, None))
+        .collect();
     Results { times, curve, start: None, snapshots }
 }
+
+/// Time factor, settlement, m, force on the plate, N, and energy.
+type CurvePoint = (f64, f64, Option<f64>, Option<Energy>);
 
 /// What a run computed.
 struct Results<'a> {
     /// Time factors of the snapshots.
     times: Vec<f64>,
-    /// Time factors, settlements, m, and forces on the plate, N.
-    curve: Vec<(f64, f64, Option<f64>)>,
+    curve: Vec<CurvePoint>,
     /// The state at the start, where it is known.
     start: Option<&'a Snapshot>,
     snapshots: Vec<Snapshot>,
@@ -131,10 +137,11 @@ impl Results<'_> {
             Some(primary) if primary.kind() == ReferenceKind::Footing => primary.settlement(1.0)?,
             Some(primary) => primary.displacement_scale()?,
         };
-        let degree = |(time_factor, settlement, force): &(f64, f64, Option<f64>)| HistoryRow {
+        let degree = |(time_factor, settlement, force, energy): &CurvePoint| HistoryRow {
             time_factor: *time_factor,
             degree_of_consolidation: settlement / final_settlement,
             load_factor: force.and_then(|force| load_factor(case, force)),
+            energy: *energy,
         };
         let history: Vec<HistoryRow> = self.curve.iter().map(degree).collect();
         let balance = self.start.map_or_else(Vec::new, |start| {

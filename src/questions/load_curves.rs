@@ -117,6 +117,7 @@ mod tests {
                 time_factor,
                 degree_of_consolidation: 0.0,
                 load_factor,
+                energy: None,
             };
             record.history = vec![row(0.5, Some(3.0)), row(9.0, None), row(*cells as f64, Some(5.0))];
             record

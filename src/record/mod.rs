@@ -18,7 +18,7 @@ pub mod whole_file;
 pub use crate::case::outcome::{AttachedRun, Status, WallSample};
 use crate::case::{Case, Norm, Quantity, Sample};
 pub use oedometer_problem::critical_step::{CriticalStep, Probe};
-use oedometer_problem::outcome::{Counters, StepSizes};
+use oedometer_problem::outcome::{Counters, Energy, StepSizes};
 use oedometer_problem::snapshot::Snapshot;
 pub use provenance::{Origins, Provenance};
 use serde::{Deserialize, Serialize};
@@ -186,6 +186,9 @@ pub struct HistoryRow {
     /// Load of a footing over its width and the strength of the soil.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load_factor: Option<f64>,
+    /// Energy, where waves run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub energy: Option<Energy>,
 }
 
 /// How far a reference itself can be trusted.

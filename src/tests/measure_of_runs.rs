@@ -91,3 +91,37 @@ fn the_last_digits_of_a_soil_that_yields_decide_neither_its_errors_nor_its_work(
         }
     }
 }
+
+#[test]
+fn the_energy_of_a_wave_is_that_of_its_fields_goes_to_and_fro_and_is_not_made() {
+    for choice in
+        ["integrator = [\"explicit\"]\ntime_step = [{ courant = 0.25 }]", "integrator = [\"implicit\"]"]
+    {
+        let record = records_of(&format!(
+            "title = \"t\"\nscene = \"standing-wave\"\noutput.time_factors = [3e-5]\n[[sweep]]\nmethod = [\"GC-SRI-patch\"]\n\
+             cells = [20]\n{choice}\n"
+        ))
+        .remove(0);
+        let energies: Vec<_> = record.history.iter().map(|row| row.energy.expect("an energy")).collect();
+        assert_eq!(energies.len(), 96, "{choice}");
+        let (soil, points) = (&record.case.material, &record.snapshots[0].points);
+        let of_point = |point: usize| {
+            let (stress, pressure) = (points.effective_stress[point], points.pressure[point]);
+            let skeleton = stress * stress / soil.oedometric_modulus();
+            let water = soil.porosity * pressure * pressure / soil.water_bulk_modulus;
+            0.5 * points.volume[point] * (skeleton + water)
+        };
+        let at_end: f64 = (0..points.volume.len()).map(of_point).sum();
+        assert!(
+            (energies[95].strain / at_end - 1.0).abs() < 1e-6,
+            "{choice}: {:?} for {at_end}",
+            energies[95]
+        );
+        let sums: Vec<f64> = energies.iter().map(|energy| energy.kinetic + energy.strain).collect();
+        assert!(sums.iter().all(|sum| *sum <= 1.02 * sums[0]), "{choice}: {sums:?}");
+        let shares = energies.iter().zip(&sums).map(|(energy, sum)| energy.kinetic / sum);
+        let [least, most] =
+            shares.fold([1.0_f64, 0.0_f64], |[low, high], share| [low.min(share), high.max(share)]);
+        assert!(least < 0.02 && most > 0.9, "{choice}: {least} to {most}");
+    }
+}

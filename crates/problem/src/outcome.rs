@@ -190,6 +190,18 @@ pub struct HistoryPoint {
     /// Force, N, of the soil on a plate that is pushed into it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plate_force: Option<f64>,
+    /// Energy, where waves run and the law has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub energy: Option<Energy>,
+}
+
+/// Energy of a body at a time, J: of a unit area in a column, of a unit thickness in the plane.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Energy {
+    /// Of the motion of grains and water.
+    pub kinetic: f64,
+    /// Of the strain of the skeleton and of the water.
+    pub strain: f64,
 }
 
 /// Everything a run leaves behind.

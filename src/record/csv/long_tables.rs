@@ -20,10 +20,12 @@ const PROFILE_COLUMNS: [(&str, &str, &str); 10] = [
 ];
 
 /// Columns of the settlement over time.
-const HISTORY_COLUMNS: [(&str, &str, &str); 3] = [
+const HISTORY_COLUMNS: [(&str, &str, &str); 5] = [
     ("case", "", "hash of the case"),
     ("time_factor", "", "T_v = c_v t/H², with the drained c_v"),
     ("degree_of_consolidation", "", "settlement over the final one of the scene's own reference"),
+    ("kinetic_energy", "J", "of grains and water, of a unit area or thickness, where waves run"),
+    ("strain_energy", "J", "of skeleton and water, with what they had at the start"),
 ];
 
 /// Columns of the tidy table that are not inputs: name, unit, meaning.
@@ -89,8 +91,13 @@ impl LongTable {
         match self {
             Self::Profiles => lines_of(profile_rows(record)),
             Self::History => lines_of(record.history.iter().map(|row| {
-                let [factor, degree] = [row.time_factor, row.degree_of_consolidation];
-                [record.hash.clone(), format!("{factor:e}"), format!("{degree:e}")]
+                let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:e}"));
+                let numbers = [Some(row.time_factor), Some(row.degree_of_consolidation)];
+                let energies =
+                    [row.energy.map(|energy| energy.kinetic), row.energy.map(|energy| energy.strain)];
+                let [factor, degree] = numbers.map(number);
+                let [kinetic, strain] = energies.map(number);
+                [record.hash.clone(), factor, degree, kinetic, strain]
             })),
         }
     }

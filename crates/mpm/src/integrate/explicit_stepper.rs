@@ -201,6 +201,17 @@ impl<const D: usize> Stepper for ExplicitStepper<D> {
         Some((energy?, body.configuration.deforms()))
     }
 
+    fn energy_now(&self) -> Option<oedometer_problem::outcome::Energy> {
+        match (&self.frozen, &self.points) {
+            (Some(frozen), points) => {
+                let body = frozen.body_now(points.body());
+                body.energy_now(body.water_of_points())
+            }
+            (None, PointSets::One(body)) => body.energy_now(body.water_of_points()),
+            (None, PointSets::Two(double)) => double.body.energy_now(double.water.volumes_and_pressures()),
+        }
+    }
+
     fn unbalanced_force(&self) -> Option<f64> {
         let largest = || match &self.frozen {
             Some(frozen) => frozen.largest_accelerating_force(),

@@ -43,6 +43,8 @@ pub struct Plan<'a> {
     pub bounds: PhysicalBounds,
     /// Time over which the load grows to its full value, s.
     pub loading_time: f64,
+    /// Whether points may leave their cells.
+    pub moves_points: bool,
     /// Rigid plate that is pushed into the surface.
     pub driven_plate: Option<DrivenPlate>,
 }
@@ -105,6 +107,7 @@ impl<'a> Plan<'a> {
                 .height(&problem.points),
             bounds: PhysicalBounds::new(problem),
             loading_time: problem.loading_time,
+            moves_points: problem.configuration.moves_points(),
             driven_plate: problem.driven_plate,
             schedule,
         }
@@ -156,6 +159,7 @@ mod tests {
             let schedule = Schedule {
                 outputs: vec![1.0],
                 history: Vec::new(),
+                notes_energy: false,
                 time_step: TimeStep::Courant(0.5),
                 settings: ExplicitSettings::default(),
                 kernel: Kernel::Fastest,

@@ -23,6 +23,8 @@ pub struct Schedule {
     pub outputs: Vec<f64>,
     /// Times at which the settlement is noted, s, ascending.
     pub history: Vec<f64>,
+    /// Whether the energy is noted with it.
+    pub notes_energy: bool,
     /// Step size.
     pub time_step: TimeStep,
     /// Choices of the explicit integrator.

@@ -79,6 +79,11 @@ pub trait Stepper {
         None
     }
 
+    /// Kinetic and strain energy of the present state; none where nobody needs it, or the law has none.
+    fn energy_now(&self) -> Option<oedometer_problem::outcome::Energy> {
+        None
+    }
+
     /// Largest force on a free component of a node that accelerates it, N, in the last step; none where nobody looks, or
     /// where a share of PIC holds the points back: it takes `(1 − flip) m (v − v̄)/Δt` of what accelerates a node, by the
     /// velocity `v̄` that the grid smoothed, and the steady motion that it leaves is accelerated by as much.

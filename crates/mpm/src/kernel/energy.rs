@@ -8,7 +8,9 @@
 //! porous solid). `dH/dt = −∫ (n² γ_w/k) |v_w − v_s|² dV ≤ 0`: a step that makes energy has no other way to be told so long
 //! before its fields are wrong, for what grows slowly grows in all of them alike.
 
+use crate::actions::Actions;
 use crate::kernel::body::Body;
+use oedometer_problem::outcome as of_state;
 use oedometer_soil::material::Material;
 use oedometer_soil::tensor::Tensor;
 
@@ -83,12 +85,17 @@ impl<const D: usize> Body<D> {
     /// Energy at a settlement, m, of the loaded surface; none where something beside a load on the surface works. `water`
     /// is the volume of water and its pressure, Pa, at each of the places that have one.
     pub(crate) fn energy(&self, settlement: f64, water: impl Iterator<Item = (f64, f64)>) -> Option<Energy> {
-        if self.actions.weight.is_some()
-            || self.actions.forcing.is_some()
-            || self.actions.plate.is_some()
-            || self.material.law.is_hyperelastic()
-            || self.has_history()
-        {
+        let Actions { weight, forcing, plate, surface, .. } = &self.actions;
+        if weight.is_some() || forcing.is_some() || plate.is_some() {
+            return None;
+        }
+        let of_state::Energy { kinetic, strain } = self.energy_now(water)?;
+        Some(Energy { kinetic, stored: strain, work: surface.work(&self.points, settlement) })
+    }
+
+    /// Energy of the state alone; none where the law has no energy of its stresses. `water` as in [`energy`](Self::energy).
+    pub(crate) fn energy_now(&self, water: impl Iterator<Item = (f64, f64)>) -> Option<of_state::Energy> {
+        if self.material.law.is_hyperelastic() || self.has_history() {
             return None;
         }
         let nodes = &self.nodes;
@@ -106,10 +113,9 @@ impl<const D: usize> Body<D> {
             points.volume(point) * energy / modulus
         });
         let pressed = water.map(|(volume, pressure)| volume * pressure * pressure);
-        Some(Energy {
+        Some(of_state::Energy {
             kinetic: moving.sum(),
-            stored: strained.sum::<f64>() + 0.5 * pressed.sum::<f64>() / self.material.water_bulk_modulus,
-            work: self.actions.surface.work(&self.points, settlement),
+            strain: strained.sum::<f64>() + 0.5 * pressed.sum::<f64>() / self.material.water_bulk_modulus,
         })
     }
 

@@ -5,7 +5,7 @@ use crate::integrate::schedule::Observer;
 use crate::integrate::stepper::{EqualSteps, StepFailure, Stepper};
 use crate::run::watch::Watch;
 use oedometer_problem::outcome::{
-    Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes,
+    Counters, Energy, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes,
 };
 use oedometer_problem::snapshot::Snapshot;
 use oedometer_problem::time_step::{Steps, steps_for};
@@ -196,7 +196,8 @@ impl<'a> Driver<'a> {
             self.stepper.advance(&most, most_error)?;
             (self.time, last) = (most.end(), most.next(1));
         }
-        let before = is_due.then(|| settled(self.stepper, self.time));
+        let with_energy = is_due && self.plan.schedule.notes_energy;
+        let before = is_due.then(|| noted(self.stepper, self.time, with_energy));
         let error = self.stepper.advance(&last, most_error)?;
         if error > most_error {
             self.ask_to_go_on()?;
@@ -206,7 +207,7 @@ impl<'a> Driver<'a> {
         self.sizes.largest = self.sizes.largest.max(dt);
         self.counters.steps += steps.count;
         self.counters.point_updates += steps.count * self.counters.points as u64;
-        let after = settled(self.stepper, end);
+        let after = noted(self.stepper, end, with_energy);
         self.watch.look(self.stepper, after.settlement, steps, &self.sizes)?;
         if let Some(before) = before {
             self.history.note(before, after, self.stepper.settlement_rate());
@@ -216,9 +217,10 @@ impl<'a> Driver<'a> {
     }
 }
 
-/// Time and settlement at one end of a step.
-fn settled(stepper: &dyn Stepper, time: f64) -> HistoryPoint {
-    HistoryPoint { time, settlement: stepper.settlement(), plate_force: stepper.plate_force() }
+/// What is noted at one end of a step.
+fn noted(stepper: &dyn Stepper, time: f64, with_energy: bool) -> HistoryPoint {
+    let energy = if with_energy { stepper.energy_now() } else { None };
+    HistoryPoint { time, settlement: stepper.settlement(), plate_force: stepper.plate_force(), energy }
 }
 
 /// Times that are due and the settlements noted so far.
@@ -241,7 +243,7 @@ impl<'a> History<'a> {
     }
 
     /// Notes the times within a step, given its two ends and the rate of the settlement at the later
-    /// one: a parabola through the three. Without a rate the settlement goes straight, and so does a force.
+    /// one: a parabola through the three. Without a rate the settlement goes straight, and so do a force and an energy.
     pub fn note(&mut self, before: HistoryPoint, after: HistoryPoint, rate: Option<f64>) {
         let (first, last) = (before.settlement, after.settlement);
         let dt = after.time - before.time;
@@ -251,8 +253,13 @@ impl<'a> History<'a> {
             let settlement =
                 first + (last - first) * share * (2.0 - share) + rate * dt * share * (share - 1.0);
             let forces = before.plate_force.zip(after.plate_force);
-            let plate_force = forces.map(|(first, last)| first + share * (last - first));
-            self.noted.push(HistoryPoint { time, settlement, plate_force });
+            let straight = |first: f64, last: f64| first + share * (last - first);
+            let plate_force = forces.map(|(first, last)| straight(first, last));
+            let energy = before.energy.zip(after.energy).map(|(first, last)| Energy {
+                kinetic: straight(first.kinetic, last.kinetic),
+                strain: straight(first.strain, last.strain),
+            });
+            self.noted.push(HistoryPoint { time, settlement, plate_force, energy });
         }
     }
 }
@@ -267,8 +274,12 @@ mod tests {
         let rate = |time: f64| 2.0 - 1.4 * time;
         let due = [0.1, 0.15, 0.2, 0.75, 1.0];
         let mut history = History::new(&due);
-        let at =
-            |time: f64| HistoryPoint { time, settlement: settlement(time), plate_force: Some(2.0 * time) };
+        let at = |time: f64| HistoryPoint {
+            time,
+            settlement: settlement(time),
+            plate_force: Some(2.0 * time),
+            energy: Some(Energy { kinetic: 3.0 * time, strain: 5.0 - time }),
+        };
         // Steps with three times, with none, and with one inside and one at its end.
         for [start, end] in [[0.0, 0.2], [0.2, 0.5], [0.5, 1.0]] {
             history.note(at(start), at(end), Some(rate(end)));
@@ -278,6 +289,8 @@ mod tests {
             assert_eq!(point.time, time);
             assert!((point.settlement - settlement(time)).abs() < 1e-15, "{point:?}");
             assert!(point.plate_force.is_some_and(|force| (force - 2.0 * time).abs() < 1e-15), "{point:?}");
+            let Energy { kinetic, strain } = point.energy.expect("noted at both ends");
+            assert!((kinetic - 3.0 * time).abs() + (strain - 5.0 + time).abs() < 1e-14, "{point:?}");
         }
     }
 
@@ -289,8 +302,12 @@ mod tests {
             time,
             settlement,
             plate_force: None,
+            energy: None,
         });
         history.note(before, after, None);
-        assert_eq!(history.noted, [HistoryPoint { time: 0.25, settlement: 1.5, plate_force: None }]);
+        assert_eq!(
+            history.noted,
+            [HistoryPoint { time: 0.25, settlement: 1.5, plate_force: None, energy: None }]
+        );
     }
 }

@@ -288,6 +288,7 @@ fn schedule_of(settings: &ExplicitSettings, end: f64, critical: f64) -> Schedule
     Schedule {
         outputs: vec![end],
         history: Vec::new(),
+        notes_energy: false,
         time_step: TimeStep::Seconds(critical),
         settings: *settings,
         kernel: Kernel::Fastest,

@@ -38,6 +38,7 @@ fn schedule(kernel: Kernel, settings: ExplicitSettings, end: f64) -> Schedule {
     Schedule {
         outputs: vec![0.0, 0.4 * end, end],
         history,
+        notes_energy: false,
         time_step: TimeStep::Stable(0.6),
         settings,
         kernel,

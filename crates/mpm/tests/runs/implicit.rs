@@ -41,6 +41,7 @@ fn schedule(soil: &Material, integrator: IntegratorKind, rule: TimeStep, time_fa
         critical_step: None,
         outputs: time_factors.iter().map(|factor| factor * per_factor).collect(),
         history: Vec::new(),
+        notes_energy: false,
         time_step: rule,
         settings: ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() },
         kernel: Kernel::Fastest,

@@ -71,6 +71,7 @@ impl Setup {
             time_limit: TimeLimit::default(),
             outputs: self.time_factors.iter().map(|factor| factor * seconds).collect(),
             history: Vec::new(),
+            notes_energy: false,
             time_step: self.rule,
             settings: self.settings,
             kernel: self.kernel,

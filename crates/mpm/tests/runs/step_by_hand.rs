@@ -280,6 +280,7 @@ fn difference_of(method: &str, soil: &Material, settings: &ExplicitSettings) -> 
     let schedule = Schedule {
         outputs: vec![STEPS as f64 * STEP],
         history: Vec::new(),
+        notes_energy: false,
         time_step: TimeStep::Seconds(STEP),
         settings: *settings,
         kernel: Kernel::Fastest,

@@ -117,6 +117,7 @@ fn stable_steps_are_refused_where_a_mode_grows_far_and_give_its_growth_elsewhere
         // The last output ends the run.
         outputs: vec![0.01 * end, end],
         history: Vec::new(),
+        notes_energy: false,
         time_step: rule,
         settings,
         kernel: Kernel::Fastest,

@@ -281,6 +281,7 @@ mod tests {
         let schedule = Schedule {
             outputs: vec![0.0, end],
             history: Vec::new(),
+            notes_energy: false,
             time_step: TimeStep::Stable(0.7),
             settings,
             kernel: Kernel::PointWise,
@@ -408,6 +409,7 @@ mod tests {
         let schedule = Schedule {
             outputs: vec![1e-3],
             history: Vec::new(),
+            notes_energy: false,
             time_step: TimeStep::Growth(0.1),
             settings: ExplicitSettings::default(),
             kernel: Kernel::Fastest,

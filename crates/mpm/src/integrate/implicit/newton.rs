@@ -467,6 +467,11 @@ impl<const D: usize> Stepper for NewtonStepper<D> {
         lost_point(&self.trial.body).map(|failure| self.with_remedy(failure))
     }
 
+    fn energy_now(&self) -> Option<oedometer_problem::outcome::Energy> {
+        let body = &self.trial.body;
+        body.energy_now(body.water_of_points())
+    }
+
     fn snapshot(&self, time: f64) -> Snapshot {
         self.trial.body.snapshot(time, self.settlement(), &self.trial.start)
     }

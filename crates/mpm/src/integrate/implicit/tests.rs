@@ -35,6 +35,7 @@ fn schedule() -> Schedule {
         critical_step: None,
         outputs: Vec::new(),
         history: Vec::new(),
+        notes_energy: false,
         time_step: TimeStep::Seconds(1.0),
         settings: ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() },
         kernel: Kernel::Fastest,

@@ -48,6 +48,7 @@ fn solved_with(
     let schedule = Schedule {
         outputs: vec![0.0, 0.05 * seconds, 0.1 * seconds],
         history: Vec::new(),
+        notes_energy: false,
         time_step: rule,
         settings: ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() },
         kernel,
@@ -164,6 +165,7 @@ fn the_assembled_plate_is_tied_whatever_the_velocities_are_mapped_by() {
             let schedule = Schedule {
                 outputs: vec![3e-4 / soft().coefficient_of_consolidation()],
                 history: Vec::new(),
+                notes_energy: false,
                 time_step: TimeStep::Stable(0.5),
                 settings: ExplicitSettings {
                     drag: Drag::Implicit,

@@ -32,6 +32,7 @@ fn stepped(
         outputs: settlements.iter().map(|settlement| parameters.time(*settlement)).collect(),
         critical_step: None,
         history: Vec::new(),
+        notes_energy: false,
         time_step: rule,
         settings: ExplicitSettings::default(),
         kernel: Kernel::Fastest,
