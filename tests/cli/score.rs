@@ -439,6 +439,26 @@ fn mistakes_that_the_numbers_show_are_named_and_others_are_not() {
 }
 
 /// What was found by a search of all errors for each took two minutes for as many times.
+/// The second run's points lie elsewhere, so that no time and no place repeats.
+#[test]
+fn two_runs_at_places_of_their_own_are_diagnosed_as_two_and_not_as_a_mixture() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    let first = column(at);
+    let other =
+        |row: &Row| Row { height: (row.height + 0.01).min(0.999), pressure: 0.6 * row.pressure, ..*row };
+    let both: Vec<Row> = first.iter().copied().chain(first.iter().map(other)).collect();
+    let diagnosed = |rows: &[Row]| -> Vec<String> {
+        let told = score(at, rows, &[]);
+        told.err.lines().filter(|line| line.starts_with("diagnosis:")).map(str::to_owned).collect()
+    };
+    assert_eq!(diagnosed(&first), [""; 0]);
+    let told = diagnosed(&both);
+    let is_named =
+        |line: &String| line.contains("it holds two runs") && line.ends_with("was a second run appended?");
+    assert!(told.len() == 1 && told.iter().all(is_named), "{told:?}");
+}
+
 #[test]
 fn many_times_take_as_long_as_their_number() {
     let folder = TempDir::new().expect("a folder");
