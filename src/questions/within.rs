@@ -132,13 +132,16 @@ fn row(
     is_within: bool,
     shared: Option<&str>,
 ) -> Vec<Cell> {
-    let mut method = match &*choice.integrator {
-        own if own.is_empty() || shared == Some(own) => choice.method.clone(),
-        integrator => format!("{}, {integrator}", choice.method),
+    let integrator = match &*choice.integrator {
+        own if own.is_empty() || shared == Some(own) => String::new(),
+        integrator => format!(", {integrator}"),
     };
-    if choice.has_other_points {
-        method += &format!(", {} per cell", choice.points_per_cell);
-    }
+    let points = if choice.has_other_points {
+        format!(", {} per cell", choice.points_per_cell)
+    } else {
+        String::new()
+    };
+    let method = format!("{}{integrator}{points}", choice.method);
     let step = match choice.largest_step {
         step if step <= 0.0 => Cell::missing("another program's"),
         step if choice.is_longest_tried => format!("≥ {}", duration(step)).into(),
