@@ -86,7 +86,7 @@ fn many_cases_are_few_files_and_every_record_is_a_line_that_anyone_can_read() {
     assert_eq!((told.code, told.out.lines().count()), (0, CASES + 1));
     assert_eq!(call(at, &["records", "out/short", "zzzz"]).code, 4);
     let told = call(at, &["records", "out/short", "--history"]);
-    assert!(told.out.starts_with("case,time_factor,degree_of_consolidation\n"));
+    assert!(told.out.starts_with("case,time_factor,degree_of_consolidation,kinetic_energy,strain_energy\n"));
     assert_eq!(call(at, &["records", "nowhere"]).code, 2);
 }
 
