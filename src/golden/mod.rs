@@ -60,8 +60,6 @@ pub struct GoldenFile {
     pub spread: BTreeMap<SpreadKey, f64>,
     /// Change of each value, and of the part of 1 that it is, that the study lets pass.
     pub wider: f64,
-    /// Whether it was read of an older layout.
-    pub is_older: bool,
 }
 
 /// What tells the inputs of a case.
@@ -153,7 +151,6 @@ impl GoldenFile {
             values: values_of(records),
             spread: BTreeMap::new(),
             wider: 0.0,
-            is_older: false,
         }
     }
 
@@ -228,19 +225,6 @@ impl GoldenFile {
             self.spread = spread.collect();
         }
         self
-    }
-
-    /// A file of an older layout in that of today, for the cases of its study: no value moves, and a case whose inputs are
-    /// not those of then has no hash.
-    #[must_use]
-    pub fn in_todays_layout(mut self, cases: &[&Case]) -> Self {
-        for (label, mark) in &mut self.cases {
-            let case = cases.iter().find(|case| case.label() == **label);
-            let same = case.filter(|case| mark.is_of(case) == Some(true));
-            *mark = same.map_or(CaseMark::Unknown, |case| CaseMark::Hash(case.hash()));
-        }
-        self.is_older = false;
-        self.widened_by(BTreeMap::new())
     }
 
     /// The file with the values and spreads of an older one wherever these agree: what is written again differs where
@@ -469,10 +453,7 @@ mod tests {
         // Layout 3 tells the inputs themselves.
         let mut of_inputs = now.clone();
         of_inputs.cases.insert(two.as_str().into(), CaseMark::Inputs(older::inputs_of(all[0])));
-        assert_eq!(of_inputs.clone().beside(&[&other, all[1]]).1, [two]);
-        assert_eq!(of_inputs.clone().in_todays_layout(&all).cases, now.cases);
-        let of_other = of_inputs.in_todays_layout(&[&other, all[1]]).cases;
-        assert_eq!(of_other.values().filter(|mark| **mark == CaseMark::Unknown).count(), 1);
+        assert_eq!(of_inputs.beside(&[&other, all[1]]).1, [two]);
     }
 
     #[test]

@@ -76,7 +76,6 @@ pub(super) fn from_text(text: &str) -> Result<GoldenFile, GoldenTextError> {
         return Err(GoldenTextError::Layout(header.schema.to_string()));
     }
     let mut golden = GoldenFile::of(&header.study, &[], &header.reason);
-    golden.is_older = true;
     let mut reader = csv::ReaderBuilder::new().comment(Some(HEADER_MARK as u8)).from_reader(text.as_bytes());
     let titles = reader.headers()?.clone();
     if !titles.iter().take(LABELS.len()).eq(LABELS) {

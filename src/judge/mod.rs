@@ -13,5 +13,6 @@ pub mod paths;
 pub mod proposals;
 pub mod reaching;
 pub mod study_check;
+pub mod study_results;
 pub mod thinning;
 pub mod verdict;

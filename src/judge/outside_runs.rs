@@ -2,14 +2,13 @@
 
 use crate::measure::statistics::{WallSpread, spread};
 use crate::record::{Record, WallSample};
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Ratio of wall to processor time from which the machine was busy or the solver waited.
 pub const BUSY: f64 = 2.0;
 
 /// A run of another program.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OutsideRunFinding {
     /// Label of the case.
     pub case: String,

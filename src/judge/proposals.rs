@@ -14,9 +14,9 @@ use oedometer_convergence::{Class, ErrorBound, OrderBand, SeriesDemand};
 use oedometer_problem::method::Method;
 
 /// Room about an order: less than the half order that it is to catch.
-const ROOM_OF_ORDER: f64 = 0.25;
+pub const ROOM_OF_ORDER: f64 = 0.25;
 /// Room over an error: less than the factor of two that it is to catch, with two digits of the bound.
-const ROOM_OF_ERROR: f64 = 1.5;
+pub const ROOM_OF_ERROR: f64 = 1.5;
 /// More cases than a person reads expectations of; records of more are not kept whole for them.
 const MOST_CASES: usize = 1000;
 /// Digits behind the first one of a number that has all of them.

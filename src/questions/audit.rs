@@ -3,12 +3,12 @@
 
 use crate::case::{Case, Quantity, Sample};
 use crate::judge::paths::{Path, first_measure, grouped};
-use crate::questions::finding::{Finding, Part, Place, Question, best};
-use crate::questions::study_results::StudyResults;
+use crate::judge::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question, best};
 use crate::questions::words;
 use crate::record::{Record, Status};
 use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
-use crate::render::page::Figure;
+use crate::render::page::{Block, Figure};
 use crate::render::table::{Cell, Mood, Table, columns};
 use crate::study::expectation::Axis;
 use oedometer_exact::ExactError;
@@ -20,12 +20,11 @@ pub static AUDIT: Question = Question {
     heading: "Are the published equations right?",
     template: include_str!("audit.md"),
     places: &[Place::Study, Place::Report],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask,
 };
 
 /// Every number and name of the sentence.
-#[derive(serde::Serialize, schemars::JsonSchema)]
+#[derive(serde::Serialize)]
 struct Facts {
     /// Cells of the finest mesh that all pairings have.
     cells: usize,
@@ -100,8 +99,8 @@ fn answer(study: &str, audit: &Audit) -> Finding {
     };
     AUDIT
         .answer([study], &facts)
-        .with(Part::Table(table(audit)))
-        .with(Part::Figures(vec![over_time(audit), over_mesh(audit)]))
+        .with(Block::Table(table(audit)))
+        .with(Block::Figures(vec![over_time(audit), over_mesh(audit)]))
 }
 
 impl Audit {

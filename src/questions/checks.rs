@@ -1,11 +1,12 @@
 //! Do the balances hold? Start checks, balances and dimensionless groups, the worst of all runs, and what is measured beside
 //! errors of fields.
 
+use crate::judge::study_results::StudyResults;
 use crate::measure::record_checks::{RecordCheck, worst_of};
-use crate::questions::finding::{Finding, Part, Place, Question};
-use crate::questions::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question};
 use crate::record::{MeasureRow, Record, Status};
 use crate::render::number;
+use crate::render::page::Block;
 use crate::render::table::{Cell, Mood, Table, columns};
 
 /// Do the balances hold?
@@ -14,12 +15,11 @@ pub static CHECKS: Question = Question {
     heading: "Do the balances hold?",
     template: include_str!("checks.md"),
     places: &[Place::Study],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask: |studies| Ok(ask(studies)),
 };
 
 /// Every number and name of the sentence.
-#[derive(serde::Serialize, schemars::JsonSchema)]
+#[derive(serde::Serialize)]
 struct Facts {
     /// Runs that reached their end: the others have no result to check.
     runs: usize,
@@ -45,10 +45,10 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
     let (runs, judged) = (sound.len(), judged().count());
     let facts = Facts { runs, judged, held: judged - failing.len(), failing };
     let summary = "Start checks, balances and dimensionless groups".to_owned();
-    let all = Part::Details(summary, vec![Part::Table(worst_checks(&checks, one.records))]);
+    let all = Block::Details { summary, blocks: vec![Block::Table(worst_checks(&checks, one.records))] };
     let finding = CHECKS.answer([one.study.name.as_str()], &facts).with(all);
     Some(match measures(one.records) {
-        Some(table) => finding.with(Part::Table(table)),
+        Some(table) => finding.with(Block::Table(table)),
         None => finding,
     })
 }

@@ -3,8 +3,8 @@
 
 use crate::case::contender::PAPERS;
 use crate::case::grouping::distinct;
+use crate::judge::study_results::StudyResults;
 use crate::questions::finding::{Finding, Place, Question};
-use crate::questions::study_results::StudyResults;
 use crate::race::RaceFindings;
 use crate::race::answer::Answer;
 use crate::race::finish::{Reason, Terms};
@@ -18,7 +18,6 @@ use crate::render::page::Figure;
 use crate::render::table::{Cell, Table, columns};
 use oedometer_exact::ExactError;
 use oedometer_soil::elementary;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
 
@@ -28,7 +27,6 @@ pub static CHOICE: Question = Question {
     heading: "Which method should I take?",
     template: include_str!("choice.md"),
     places: &[Place::Report],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask,
 };
 
@@ -71,7 +69,7 @@ pub fn places_of(read_out: ReadOut) -> &'static str {
 }
 
 /// Every number and name of the sentences.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Facts {
     /// Problems.
     pub problems: usize,
@@ -98,7 +96,7 @@ impl Facts {
 }
 
 /// What is said of a group: one sentence where it holds wherever one looks, else one per read-out.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GroupAnswer {
     /// The group.
     pub group: Group,
@@ -111,7 +109,7 @@ pub struct GroupAnswer {
 }
 
 /// The best of a group and read-out.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct ReadAnswer {
     /// Where fields are read, in words.
     places: String,
@@ -126,7 +124,7 @@ struct ReadAnswer {
 }
 
 /// Who reaches 1 % most often of the methods for all problems, those whose mesh stays, and at what price.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Leader {
     /// Where fields are read.
     #[serde(rename = "readout")]
@@ -146,7 +144,7 @@ pub struct Leader {
 }
 
 /// What to take in a family of problems.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FamilyAnswer {
     /// The group.
     pub group: Group,

@@ -4,16 +4,17 @@
 use crate::case::contender::PAPERS;
 use crate::case::{Case, Quantity, Sample};
 use crate::judge::paths::{Path, grouped};
+use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::larger;
-use crate::questions::finding::{Finding, Part, Place, Question, best};
+use crate::questions::finding::{Finding, Place, Question, best};
+use crate::questions::published_equations::QUOTED_CELLS;
 use crate::questions::series::{Series, SeriesTable};
 use crate::questions::series_figure::{figure, figures};
-use crate::questions::study_results::StudyResults;
+use crate::render::page::Block;
 use crate::study::expectation::Axis;
 use oedometer_convergence::Class;
 use oedometer_exact::ExactError;
 use oedometer_soil::elementary;
-use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Does it converge, how fast, and to what?
@@ -22,7 +23,6 @@ pub static CONVERGENCE: Question = Question {
     heading: "Does it converge, how fast, and to what?",
     template: include_str!("convergence.md"),
     places: &[Place::Terminal, Place::Study, Place::Report],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask,
 };
 
@@ -32,18 +32,15 @@ const ENOUGH_METHODS: usize = 3;
 /// Methods of a study beside others in the table of a report.
 const MOST_METHODS: usize = 5;
 
-/// Cells of the mesh on which errors are quoted: the paper's.
-const QUOTED_CELLS: usize = 10;
-
 /// Every number and name of the sentence.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct Facts {
     /// A study's own, or a column at small and one at large strain, as far as there are studies of them.
     columns: Vec<ColumnFacts>,
 }
 
 /// A method on several meshes.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct ColumnFacts {
     /// Final strain of a column at large strain.
     final_strain: Option<f64>,
@@ -64,7 +61,7 @@ struct ColumnFacts {
 }
 
 /// The order of a quantity.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct OrderFacts {
     /// Quantity.
     quantity: Quantity,
@@ -80,11 +77,13 @@ fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
         let (facts, file) = (Facts { columns: vec![facts_of(&found)] }, CONVERGENCE.id);
         let finding = CONVERGENCE
             .answer([one.study.name.as_str()], &facts)
-            .with(Part::Table(found.table(file)))
-            .with(Part::Figures(figures(&found)));
+            .with(Block::Table(found.table(file)))
+            .with(Block::Figures(figures(&found)));
         let floors = found.floors().map(|table| table.file("floors"));
-        let details =
-            floors.map(|table| Part::Details("What limits errors".to_owned(), vec![Part::Table(table)]));
+        let details = floors.map(|table| Block::Details {
+            summary: "What limits errors".to_owned(),
+            blocks: vec![Block::Table(table)],
+        });
         return Ok(Some(details.into_iter().fold(finding, Finding::with)));
     }
     let is_small = |case: &Case| {
@@ -109,7 +108,7 @@ fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
             (*name).clone_into(&mut figure.name);
             figure
         });
-        finding = finding.with(Part::Table(found.table(name))).with(Part::Figures(drawn.collect()));
+        finding = finding.with(Block::Table(found.table(name))).with(Block::Figures(drawn.collect()));
     }
     Ok(Some(finding))
 }

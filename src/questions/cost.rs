@@ -2,12 +2,12 @@
 
 use crate::case::IntegratorKind;
 use crate::case::grouping::distinct;
-use crate::questions::finding::{Finding, Part, Place, Question, best};
-use crate::questions::study_results::StudyResults;
+use crate::judge::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question, best};
 use crate::questions::timed_runs::WorkPrecision;
 use crate::questions::words;
 use crate::render::chart::{Chart, ChartAxis, Naming, PointName, Series, Size, slots};
-use crate::render::page::Figure;
+use crate::render::page::{Block, Figure};
 use crate::render::table::{Cell, Table, columns};
 use oedometer_exact::ExactError;
 
@@ -17,12 +17,11 @@ pub static COST: Question = Question {
     heading: "What does accuracy cost?",
     template: include_str!("cost.md"),
     places: &[Place::Study, Place::Report],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask,
 };
 
 /// Every number and name of the sentence.
-#[derive(serde::Serialize, schemars::JsonSchema)]
+#[derive(serde::Serialize)]
 struct Facts {
     /// The widest tolerance of the pressure at the points, relative L2, at every output.
     tolerance: f64,
@@ -69,8 +68,8 @@ fn answer(study: &str, precision: &WorkPrecision<'_>) -> Option<Finding> {
         noise: precision.noise_floor,
     };
     let figure = Figure::new("cost", chart(precision), CAPTION);
-    let parts = COST.answer([study], &facts).with(Part::Figures(vec![figure]));
-    Some(parts.with(Part::Table(table(precision))))
+    let parts = COST.answer([study], &facts).with(Block::Figures(vec![figure]));
+    Some(parts.with(Block::Table(table(precision))))
 }
 
 /// Factor on the longest time up to which the axis goes.

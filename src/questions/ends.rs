@@ -3,10 +3,11 @@
 use crate::case::grouping::{distinct, grouped};
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::paths::first_error;
-use crate::questions::finding::{Finding, Part, Place, Question};
-use crate::questions::study_results::StudyResults;
+use crate::judge::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question};
 use crate::record::{Record, Status};
 use crate::render::number;
+use crate::render::page::Block;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 
 /// How did each case end?
@@ -15,12 +16,11 @@ pub static ENDS: Question = Question {
     heading: "How did each case end?",
     template: include_str!("ends.md"),
     places: &[Place::Study],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask: |studies| Ok(ask(studies)),
 };
 
 /// Every number of the sentence.
-#[derive(serde::Serialize, schemars::JsonSchema)]
+#[derive(serde::Serialize)]
 struct Facts {
     /// Cases with a record.
     cases: usize,
@@ -39,7 +39,10 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
     let ended = || one.records.iter().filter(|record| record.status == Status::Ok);
     let useless = ended().filter(|record| error_of(record).is_some_and(|error| !is_useful(error)));
     let facts = Facts { cases: one.records.len(), ended: ended().count(), useless: useless.count() };
-    let each = Part::Details("Every case by its method".to_owned(), vec![Part::Table(table(one.records))]);
+    let each = Block::Details {
+        summary: "Every case by its method".to_owned(),
+        blocks: vec![Block::Table(table(one.records))],
+    };
     Some(ENDS.answer([one.study.name.as_str()], &facts).with(each))
 }
 

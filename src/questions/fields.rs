@@ -1,13 +1,13 @@
 //! Where is the pressure wrong? Pressure fields of a plane layer beside the exact one.
 
 use crate::case::Quantity;
+use crate::judge::study_results::StudyResults;
 use crate::measure::fields::PlaneField;
-use crate::questions::finding::{Finding, Part, Place, Question};
-use crate::questions::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question};
 use crate::record::{Record, Status};
 use crate::render::chart::{Chart, ChartAxis, ColourField, Size};
 use crate::render::number;
-use crate::render::page::{Figure, slug};
+use crate::render::page::{Block, Figure, slug};
 use oedometer_exact::ExactError;
 
 /// Where is the pressure wrong?
@@ -16,12 +16,11 @@ pub static FIELDS: Question = Question {
     heading: "Where is the pressure wrong?",
     template: include_str!("fields.md"),
     places: &[Place::Study],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask,
 };
 
 /// Every number and name of the sentence.
-#[derive(serde::Serialize, schemars::JsonSchema)]
+#[derive(serde::Serialize)]
 struct Facts {
     /// Cells over the height.
     cells: usize,
@@ -76,7 +75,7 @@ fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
     if fields.len() > 1 {
         figures.push(figure(&name(most), &most.1, &most.1.computed, Some(most.0)));
     }
-    Ok(Some(FIELDS.answer([one.study.name.as_str()], &facts).with(Part::Figures(figures))))
+    Ok(Some(FIELDS.answer([one.study.name.as_str()], &facts).with(Block::Figures(figures))))
 }
 
 /// A field in the colours of the exact one, which reach a little beyond its values.
@@ -148,7 +147,7 @@ mod tests {
             ask(&[StudyResults::new(&study, &records, Tier::Full)]).expect("theory").expect("a layer");
         let told = found.sentence().expect("a sentence");
         assert!(told.starts_with("At T_v = 0.1, on 8 cells and with ν = 0.25, the pressure of `"), "{told}");
-        let [Part::Figures(figures)] = &found.parts[..] else { panic!("{found:?}") };
+        let [Block::Figures(figures)] = &found.parts[..] else { panic!("{found:?}") };
         let [least, most] = ["least", "most"].map(|end| slug(found.facts[end].as_str().expect("a method")));
         let names: Vec<&str> = figures.iter().map(|figure| figure.name.as_str()).collect();
         assert_eq!(names, ["field-exact".to_owned(), format!("field-{least}"), format!("field-{most}")]);

@@ -1,15 +1,13 @@
 //! A question of a reader, and what is found: facts, sentences, tables and figures, from which every view is written.
 
+use crate::judge::study_results::StudyResults;
 use crate::questions::sentence;
-use crate::questions::study_results::StudyResults;
 use crate::render::RenderError;
-use crate::render::page::Figure;
+use crate::render::page::{Block, tables_in};
 use crate::render::table::Table;
 use oedometer_exact::ExactError;
-use schemars::{Schema, SchemaGenerator};
-use serde::de::IgnoredAny;
 use serde::ser::Error;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
 /// Where an answer stands.
@@ -34,8 +32,6 @@ pub struct Question {
     pub template: &'static str,
     /// Where it is answered.
     pub places: &'static [Place],
-    /// What the facts of its answer are.
-    pub facts: fn(&mut SchemaGenerator) -> Schema,
     /// Asks studies: those of a report together, a study alone for its own page and the terminal.
     pub ask: fn(&[StudyResults<'_>]) -> Result<Option<Finding>, ExactError>,
 }
@@ -50,22 +46,7 @@ pub struct Finding {
     /// Every number and name that its sentences may use.
     pub facts: Value,
     /// What stands below the sentence.
-    pub parts: Vec<Part>,
-}
-
-/// A part of an answer.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Part {
-    /// A further template, filled with the same facts.
-    Sentence(&'static str),
-    /// A table.
-    Table(Table),
-    /// Figures side by side; none on the terminal.
-    Figures(Vec<Figure>),
-    /// Parts of which one is shown at a time, each with the word that shows it; the first on the terminal.
-    Views(Vec<(String, Vec<Part>)>),
-    /// Parts that the reader opens; none on the terminal.
-    Details(String, Vec<Part>),
+    pub parts: Vec<Block>,
 }
 
 impl PartialEq for Question {
@@ -95,7 +76,7 @@ impl Question {
 impl Finding {
     /// Adds a part.
     #[must_use]
-    pub fn with(mut self, part: Part) -> Self {
+    pub fn with(mut self, part: Block) -> Self {
         self.parts.push(part);
         self
     }
@@ -105,26 +86,12 @@ impl Finding {
     /// # Errors
     /// If the template needs what is no fact.
     pub fn sentence(&self) -> Result<String, RenderError> {
-        self.words(self.question.template)
+        sentence::filled(self.question.template, &self.facts)
     }
 
-    /// A template filled with the facts.
-    ///
-    /// # Errors
-    /// If the template needs what is no fact.
-    pub fn words(&self, template: &str) -> Result<String, RenderError> {
-        sentence::filled(template, &self.facts)
-    }
-
-    /// Its tables in order, those inside other parts among them.
+    /// Its tables in order, those that the reader opens among them.
     pub fn tables(&self) -> Vec<&Table> {
-        let mut tables = Vec::new();
-        each(&self.parts, &mut |part| {
-            if let Part::Table(table) = part {
-                tables.push(table);
-            }
-        });
-        tables
+        tables_in(&self.parts)
     }
 }
 
@@ -140,23 +107,12 @@ impl Serialize for Finding {
     }
 }
 
-/// No finding is read again: whoever has the records asks the question.
-///
-/// # Errors
-/// If the text is no JSON.
-pub fn unread<'d, D: Deserializer<'d>>(from: D) -> Result<Vec<Finding>, D::Error> {
-    IgnoredAny::deserialize(from).map(|_| Vec::new())
-}
+/// Version of the layout of `findings.json`; it rises when a key goes or changes its meaning.
+const SCHEMA: u32 = 3;
 
-fn each<'p>(parts: &'p [Part], look: &mut impl FnMut(&'p Part)) {
-    for part in parts {
-        look(part);
-        match part {
-            Part::Views(views) => views.iter().for_each(|(_, parts)| each(parts, look)),
-            Part::Details(_, parts) => each(parts, look),
-            _ => {}
-        }
-    }
+/// What `findings.json` has beside a report, and beside the page of a study.
+pub fn findings_json(findings: &[Finding]) -> Value {
+    json!({ "schema": SCHEMA, "findings": findings })
 }
 
 /// The study that has most of what answers a question, the first of equals. A race answers elsewhere.

@@ -1,11 +1,13 @@
 //! The questions in the order of a reader, and their answers.
 
+use crate::judge::study_results::StudyResults;
 use crate::questions::audit::AUDIT;
 use crate::questions::checks::CHECKS;
 use crate::questions::choice::CHOICE;
 use crate::questions::convergence::CONVERGENCE;
 use crate::questions::cost::COST;
 use crate::questions::ends::ENDS;
+use crate::questions::expected::EXPECTED;
 use crate::questions::fields::FIELDS;
 use crate::questions::finding::{Finding, Place, Question};
 use crate::questions::load_curves::LOAD_CURVES;
@@ -19,18 +21,15 @@ use crate::questions::profiles::PROFILES;
 use crate::questions::setting::SETTING;
 use crate::questions::settlement::SETTLEMENT;
 use crate::questions::stability::STABILITY;
-use crate::questions::study_results::StudyResults;
 use crate::questions::time_step::TIME_STEP;
 use crate::questions::uncertainty::UNCERTAINTY;
 use crate::questions::within::WITHIN;
-use crate::questions::work::WORK;
 use oedometer_exact::ExactError;
 use rayon::prelude::*;
-use schemars::{Schema, SchemaGenerator, json_schema};
-use serde_json::json;
 
 /// Every question, in the order of a page.
 pub static QUESTIONS: &[&Question] = &[
+    &EXPECTED,
     &SETTING,
     &CHOICE,
     &WITHIN,
@@ -46,7 +45,6 @@ pub static QUESTIONS: &[&Question] = &[
     &FIELDS,
     &LOAD_CURVES,
     &PROFILES,
-    &WORK,
     &STABILITY,
     &ENDS,
     &UNCERTAINTY,
@@ -67,34 +65,4 @@ pub fn answers(studies: &[StudyResults<'_>], place: Place) -> Result<Vec<Finding
         .map(|question| (question.ask)(studies))
         .collect();
     asked.into_iter().filter_map(Result::transpose).collect()
-}
-
-/// What `findings.json` has of the answers.
-pub fn schema(generator: &mut SchemaGenerator) -> Schema {
-    let table = json!({
-        "type": "object",
-        "properties": {
-            "file": { "type": ["string", "null"], "description": "Name of its file." },
-            "title": { "type": "string", "description": "What it is of." },
-            "columns": { "type": "array", "items": { "type": "string" }, "description": "Headings." },
-            "rows": { "type": "array", "items": { "type": "array" }, "description": "Numbers, words, or null where there is nothing." },
-        },
-        "required": ["file", "title", "columns", "rows"],
-    });
-    let of_question = |question: &&Question| {
-        let facts = (question.facts)(generator);
-        json_schema!({
-            "type": "object",
-            "properties": {
-                "question": { "const": question.id, "description": question.heading },
-                "studies": { "type": "array", "items": { "type": "string" }, "description": "Studies that show it." },
-                "answer": { "type": "string", "description": "The answer in words." },
-                "facts": facts,
-                "tables": { "type": "array", "items": table, "description": "What shows it." },
-            },
-            "required": ["question", "studies", "answer", "facts", "tables"],
-        })
-    };
-    let answers: Vec<Schema> = QUESTIONS.iter().map(of_question).collect();
-    json_schema!({ "type": "array", "items": { "anyOf": answers } })
 }

@@ -2,11 +2,11 @@
 
 use crate::case::Quantity;
 use crate::case::grouping::grouped;
-use crate::questions::finding::{Finding, Part, Place, Question};
-use crate::questions::study_results::StudyResults;
+use crate::judge::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question};
 use crate::record::{Record, Status};
 use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
-use crate::render::page::Figure;
+use crate::render::page::{Block, Figure};
 use oedometer_exact::footing::LOAD_FACTOR;
 
 /// What does a footing carry?
@@ -15,12 +15,11 @@ pub static LOAD_CURVES: Question = Question {
     heading: "What does the footing carry?",
     template: include_str!("load_curves.md"),
     places: &[Place::Study],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask: |studies| Ok(ask(studies)),
 };
 
 /// Every number and name of the sentence.
-#[derive(serde::Serialize, schemars::JsonSchema)]
+#[derive(serde::Serialize)]
 struct Facts {
     /// Methods with a run on the mesh.
     methods: usize,
@@ -87,7 +86,7 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
         chart,
         "The line of a method that locks leaves the figure at its top.",
     );
-    Some(LOAD_CURVES.answer([one.study.name.as_str()], &facts).with(Part::Figures(vec![figure])))
+    Some(LOAD_CURVES.answer([one.study.name.as_str()], &facts).with(Block::Figures(vec![figure])))
 }
 
 #[cfg(test)]
@@ -125,7 +124,7 @@ mod tests {
         let found = |study: &Study, records: &[Record]| ask(&[StudyResults::new(study, records, Tier::Full)]);
         let drawn = |study: &Study, records: &[Record]| {
             let answer = found(study, records).expect("curves");
-            let [Part::Figures(figures)] = &answer.parts[..] else { panic!("{answer:?}") };
+            let [Block::Figures(figures)] = &answer.parts[..] else { panic!("{answer:?}") };
             let curve = |one: &Series| (one.name.clone(), one.points.last().map_or(0.0, |last| last.0));
             let curves: Vec<_> = figures[0].chart.series.iter().map(curve).collect();
             (answer.sentence().expect("a sentence"), curves)

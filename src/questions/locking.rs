@@ -1,11 +1,11 @@
 //! Who locks? The errors of every method over Poisson's ratio, where a study sweeps it in the plane.
 
-use crate::questions::finding::{Finding, Part, Place, Question, best};
+use crate::judge::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question, best};
 use crate::questions::stiffness_sweep::{KEPT, StiffnessSweep, SweepRow};
-use crate::questions::study_results::StudyResults;
 use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size};
 use crate::render::number;
-use crate::render::page::Figure;
+use crate::render::page::{Block, Figure};
 use crate::render::table::{Cell, Mood, Table, columns};
 use oedometer_exact::ExactError;
 use oedometer_soil::wording::typed;
@@ -17,12 +17,11 @@ pub static LOCKING: Question = Question {
     heading: "Who locks?",
     template: include_str!("locking.md"),
     places: &[Place::Terminal, Place::Study, Place::Report],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask,
 };
 
 /// Every number and name of the sentence.
-#[derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+#[derive(serde::Serialize, serde::Deserialize)]
 struct Facts {
     /// Cells over the height.
     cells: usize,
@@ -46,7 +45,7 @@ fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
         if !one.study.scene.locks {
             return Ok(None);
         }
-        let sweep = StiffnessSweep::new(one.study, one.records)?;
+        let sweep = StiffnessSweep::new(one.study, one.records);
         Ok(sweep.map(|sweep| (sweep.rows.len(), sweep)))
     })?;
     Ok(most.and_then(|(one, sweep)| answer(&one.study.name, &sweep)))
@@ -61,11 +60,10 @@ fn answer(study: &str, sweep: &StiffnessSweep) -> Option<Finding> {
     let kept_methods: Vec<String> = kept.map(|row| row.method.to_string()).collect();
     let (cells, methods, kept) = (sweep.cells, rows.len(), kept_methods.len());
     let facts = Facts { cells, time_factor, kept_within: KEPT, largest_ratio, methods, kept, kept_methods };
-    let figures = SHOWN.iter().enumerate().map(|(place, shown)| figure(&rows, &sweep.values, place, shown));
-    let table = Part::Table(table(&rows, &sweep.values));
-    let finding = LOCKING.answer([study], &facts).with(table);
+    let finding = LOCKING.answer([study], &facts).with(Block::Table(table(&rows, &sweep.values)));
     // Two ratios are no line.
-    Some(if sweep.values.len() > 2 { finding.with(Part::Figures(figures.collect())) } else { finding })
+    let figures = (sweep.values.len() > 2).then(|| Block::Figures(vec![figure(&rows, &sweep.values)]));
+    Some(figures.into_iter().fold(finding, Finding::with))
 }
 
 /// Whether a method ran at the largest ratio and lost its result at none.
@@ -106,28 +104,19 @@ fn loss(row: &SweepRow, ratios: &[f64]) -> Cell {
     }
 }
 
-/// What a figure shows of each run: its name, title and axis.
-const SHOWN: [[&str; 3]; 3] = [
-    ["locking-displacement", "Displacement at the nodes", "relative L_2 error (–)"],
-    ["locking-pressure", "Pressure at the points", "relative L_2 error (–)"],
-    ["locking-oscillation", "Oscillation of the pressure", "total variation over the exact one's (–)"],
-];
-
-/// One number of all methods over a ratio spaced as 1 − 2ν; of an oscillation index the ratio of variations.
-fn figure(rows: &[&SweepRow], ratios: &[f64], place: usize, [name, title, label]: &[&str; 3]) -> Figure {
+/// The error of the pressure of all methods over a ratio spaced as 1 − 2ν.
+fn figure(rows: &[&SweepRow], ratios: &[f64]) -> Figure {
     let ticks = ratios.iter().map(|ratio| (1.0 - 2.0 * ratio, typed(*ratio)));
     let x = ChartAxis::log10("Poisson's ratio ν (–), spaced as 1 − 2ν").inverted().with_labelled_ticks(ticks);
-    let mut chart = Chart::new(*title, x, ChartAxis::log10(*label));
+    let mut chart = Chart::new("Pressure at the points", x, ChartAxis::log10("relative L_2 error (–)"));
     chart.size = Size::PANEL;
-    let (offset, rule) = if place == 2 { (1.0, (1.0, "theory")) } else { (0.0, (KEPT, "lost")) };
     for row in rows {
-        let point =
-            |(found, ratio): (&[Option<f64>; 3], &f64)| Some((1.0 - 2.0 * ratio, offset + found[place]?));
-        let points = row.found.iter().zip(ratios).filter_map(point).collect();
+        let point = |(place, ratio): (usize, &f64)| Some((1.0 - 2.0 * ratio, row.errors(place)[1]?));
+        let points = ratios.iter().enumerate().filter_map(point).collect();
         chart.series.push(Series::new(row.method.to_string(), points));
     }
-    chart.rules.push(Rule { at: rule.0, label: rule.1.to_owned() });
-    Figure::new(*name, chart, "The line of a method that does not lock stays level.")
+    chart.rules.push(Rule { at: KEPT, label: "lost".to_owned() });
+    Figure::new("locking-pressure", chart, "The line of a method that does not lock stays level.")
 }
 
 #[cfg(test)]
@@ -138,12 +127,11 @@ mod tests {
     use crate::case::planned::Tier;
     use oedometer_problem::method::Method;
 
-    /// Oscillation does not count.
     fn row(name: &str, errors: [[Option<f64>; 2]; 3]) -> SweepRow {
         SweepRow {
             method: SolverName::Own(Method::named(name).expect("a method")),
             time_factor: 0.1,
-            found: errors.map(|[displacement, pressure]| [displacement, pressure, Some(9.0)]).to_vec(),
+            found: errors.to_vec(),
             failed: vec![None; 3],
         }
     }
@@ -212,12 +200,10 @@ mod tests {
         let rows = &found.tables()[0].rows;
         assert_eq!(rows[0][2..], [0.01, 0.05, 0.02, 0.06].map(Cell::Error));
         assert_eq!(rows[1][4], Cell::missing("no result"));
-        let Some(Part::Figures(figures)) = found.parts.last() else { panic!("{found:?}") };
-        let last = figures.iter().map(|figure| figure.chart.series[0].points[2]);
-        // Oscillation does not count as an error; one of nothing is a ratio of one.
-        let at = 1.0 - 2.0 * 0.49;
-        assert_eq!(last.collect::<Vec<_>>(), [(at, 0.05), (at, 0.06), (at, 10.0)]);
-        assert_eq!(figures[1].chart.series[1].points.len(), 0, "nothing is drawn where nothing was found");
+        let Some(Block::Figures(figures)) = found.parts.last() else { panic!("{found:?}") };
+        let series = &figures[0].chart.series;
+        assert_eq!(series[0].points[2], (1.0 - 2.0 * 0.49, 0.06));
+        assert_eq!(series[1].points.len(), 0, "nothing is drawn where nothing was found");
     }
 
     #[test]

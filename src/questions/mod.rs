@@ -1,17 +1,15 @@
 //! What readers ask of studies: a question is one file with its template beside it, and answers with a finding, from which
 //! the terminal, the page of a study, the report and `findings.json` are written.
 
-pub mod answers;
 pub mod audit;
-pub mod blocks;
 pub mod checks;
 pub mod choice;
 pub mod convergence;
 pub mod cost;
 pub mod ends;
+pub mod expected;
 pub mod fields;
 pub mod finding;
-pub mod findings;
 pub mod list;
 pub mod load_curves;
 pub mod locking;
@@ -30,11 +28,8 @@ pub mod setting;
 pub mod settlement;
 pub mod stability;
 pub mod stiffness_sweep;
-pub mod study_findings;
-pub mod study_results;
 pub mod time_step;
 pub mod timed_runs;
 pub mod uncertainty;
 pub mod within;
 pub mod words;
-pub mod work;

@@ -2,8 +2,9 @@
 
 use crate::campaign::taken_over::TakenOver;
 use crate::judge::outside_runs::{BUSY, OutsideRunFinding, outside_runs};
-use crate::questions::finding::{Finding, Part, Place, Question};
-use crate::questions::study_results::StudyResults;
+use crate::judge::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question};
+use crate::render::page::Block;
 use crate::render::table::{Cell, Mood, Table, columns};
 
 /// How did attached solvers run?
@@ -12,12 +13,11 @@ pub static OUTSIDE_RUNS: Question = Question {
     heading: "How did attached solvers run?",
     template: include_str!("outside_runs.md"),
     places: &[Place::Study],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask: |studies| Ok(ask(studies)),
 };
 
 /// Every number of the sentence.
-#[derive(serde::Serialize, schemars::JsonSchema)]
+#[derive(serde::Serialize)]
 struct Facts {
     /// Runs of attached solvers.
     runs: usize,
@@ -43,7 +43,7 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
         busy_ratio: BUSY,
     };
     let table = table(&runs).notes(TakenOver::sentences(&one.check.taken_over));
-    Some(OUTSIDE_RUNS.answer([one.study.name.as_str()], &facts).with(Part::Table(table)))
+    Some(OUTSIDE_RUNS.answer([one.study.name.as_str()], &facts).with(Block::Table(table)))
 }
 
 /// One row per run: how it ended, what it took, and whether its repeats agree.

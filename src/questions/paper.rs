@@ -4,15 +4,14 @@
 use crate::case::contender::PAPERS;
 use crate::case::{Case, Quantity, Sample};
 use crate::judge::paths::first_error;
-use crate::questions::answers::QUOTED_CELLS;
-use crate::questions::finding::{Finding, Part, Place, Question};
+use crate::judge::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question};
 use crate::questions::profiles::{consolidation, isochrones};
-use crate::questions::published_equations::{LARGE_STRAIN_LOAD, PublishedEquations};
-use crate::questions::study_results::StudyResults;
+use crate::questions::published_equations::{LARGE_STRAIN_LOAD, PublishedEquations, QUOTED_CELLS};
 use crate::questions::words;
 use crate::record::{Record, Status};
 use crate::render::chart::Size;
-use crate::render::page::Figure;
+use crate::render::page::{Block, Figure};
 use crate::render::table::{Cell, Table, columns};
 use oedometer_exact::ExactError;
 use oedometer_scenes::column::Column;
@@ -25,12 +24,11 @@ pub static PAPER: Question = Question {
     heading: "Does it reproduce the paper?",
     template: include_str!("paper.md"),
     places: &[Place::Report],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask,
 };
 
 /// Every number and name of the sentence.
-#[derive(serde::Serialize, schemars::JsonSchema)]
+#[derive(serde::Serialize)]
 struct Facts {
     /// Method: the paper's.
     method: String,
@@ -72,10 +70,10 @@ fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
     }
     let finding = PAPER
         .answer(runs.iter().map(|run| run.results.study.name.as_str()), &facts)
-        .with(Part::Figures(figures))
-        .with(Part::Table(table.file("paper").note("relative L_2 error at the points")));
+        .with(Block::Figures(figures))
+        .with(Block::Table(table.file("paper").note("relative L_2 error at the points")));
     Ok(Some(match &printed {
-        Some(printed) => finding.with(Part::Table(table_of_equations(printed))),
+        Some(printed) => finding.with(Block::Table(table_of_equations(printed))),
         None => finding,
     }))
 }
@@ -95,8 +93,8 @@ fn table_of_equations(printed: &PublishedEquations) -> Table {
         .note("porosity-dependent law, constant porosity gradient")
 }
 
-/// The size of one figure of four in a row.
-const QUARTER: Size = Size { width: 400.0, plot_height: 300.0, equal_units: false };
+/// The size of one figure of four in a row, which a phone shows too.
+const QUARTER: Size = Size { width: 368.0, plot_height: 300.0, equal_units: false };
 
 /// A figure as one of the four.
 fn quarter(mut figure: Figure, number: &str) -> Figure {
@@ -240,7 +238,7 @@ mod tests {
             ask(&results).expect("sound")
         };
         let found = answered(&all).expect("answered");
-        let [Part::Figures(figures), Part::Table(runs), Part::Table(equations)] = &found.parts[..] else {
+        let [Block::Figures(figures), Block::Table(runs), Block::Table(equations)] = &found.parts[..] else {
             panic!("{found:?}")
         };
         let shown = |table: &Table| -> Vec<String> {

@@ -4,10 +4,11 @@
 use crate::case::contender::PAPERS;
 use crate::case::{Quantity, Sample};
 use crate::judge::paths::first_error;
+use crate::judge::study_results::StudyResults;
 use crate::questions::cost::timed_study;
-use crate::questions::finding::{Finding, Part, Place, Question};
-use crate::questions::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question};
 use crate::questions::timed_runs::TimedRun;
+use crate::render::page::Block;
 use crate::render::table::{Cell, Table, columns};
 use oedometer_exact::{ExactError, ReferenceKind};
 use serde::Deserialize;
@@ -19,12 +20,11 @@ pub static PEERS: Question = Question {
     heading: "What do other programs reach?",
     template: include_str!("peers.md"),
     places: &[Place::Study, Place::Report],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask,
 };
 
 /// Every number and name of the sentence.
-#[derive(serde::Serialize, schemars::JsonSchema)]
+#[derive(serde::Serialize)]
 struct Facts {
     /// The paper's method.
     method: String,
@@ -102,7 +102,7 @@ fn answer(study: &str, runs: &[TimedRun<'_>]) -> Option<Finding> {
     };
     let ahead = compared.iter().filter(|(peer, papers)| is_ahead(peer, papers)).count();
     let facts = Facts { method: PAPERS.to_owned(), compared: compared.len(), ahead };
-    Some(PEERS.answer([study], &facts).with(Part::Table(table(&beside))))
+    Some(PEERS.answer([study], &facts).with(Block::Table(table(&beside))))
 }
 
 /// The errors of the best implicit run of the paper's method on a mesh, measured like those of the other programs.

@@ -4,11 +4,12 @@
 use crate::case::keys::{Key, Value};
 use crate::case::{Quantity, Sample};
 use crate::judge::paths::{first_error, grouped};
+use crate::judge::study_results::StudyResults;
 use crate::measure::record_checks::has_burst;
 use crate::measure::statistics::median;
-use crate::questions::finding::{Finding, Part, Place, Question};
-use crate::questions::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question};
 use crate::record::{Record, Status};
+use crate::render::page::Block;
 use crate::render::table::{Cell, Table, columns};
 use std::collections::HashMap;
 
@@ -18,12 +19,11 @@ pub static POINT_SETS: Question = Question {
     heading: "One set of material points, or two?",
     template: include_str!("point_sets.md"),
     places: &[Place::Study, Place::Report],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask: |studies| Ok(ask(studies)),
 };
 
 /// Every number of the sentence; ratios are of two sets over one.
-#[derive(serde::Serialize, schemars::JsonSchema)]
+#[derive(serde::Serialize)]
 struct Facts {
     /// Pairs of runs that differ in the point sets alone.
     pairs: usize,
@@ -77,7 +77,7 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
         bursts: studies.iter().flat_map(|one| one.records).filter(|record| has_burst(record)).count(),
     };
     let named = grouped(&pairs, |pair| pair.study).into_iter().map(|(study, _)| study);
-    Some(POINT_SETS.answer(named, &facts).with(Part::Table(table(&rows))))
+    Some(POINT_SETS.answer(named, &facts).with(Block::Table(table(&rows))))
 }
 
 /// The runs with two sets that have a twin with one.

@@ -1,12 +1,12 @@
 //! What do more points per cell, or stiffer water, change? Errors along both end in that of the mesh, and have no order.
 
 use crate::case::Quantity;
-use crate::questions::finding::{Finding, Part, Place, Question};
+use crate::judge::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question};
 use crate::questions::series::{SeriesTable, name_of_level};
 use crate::questions::series_figure::figure;
-use crate::questions::study_results::StudyResults;
+use crate::render::page::Block;
 use crate::study::expectation::Axis;
-use schemars::JsonSchema;
 use serde::Serialize;
 
 /// What do more points per cell change?
@@ -15,7 +15,6 @@ pub static POINTS: Question = Question {
     heading: "What do more points per cell change?",
     template: include_str!("points.md"),
     places: &[Place::Terminal, Place::Study],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask: |studies| Ok(ask(studies, &POINTS, Axis::PointsPerCell)),
 };
 
@@ -25,12 +24,11 @@ pub static WATER: Question = Question {
     heading: "What does stiffer water change?",
     template: include_str!("points.md"),
     places: &[Place::Terminal, Place::Study],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask: |studies| Ok(ask(studies, &WATER, Axis::WaterBulkModulus)),
 };
 
 /// Every number and name of the sentence.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct Facts {
     /// Time factor.
     time_factor: f64,
@@ -61,5 +59,5 @@ fn ask(studies: &[StudyResults<'_>], question: &'static Question, axis: Axis) ->
     };
     let drawn = figure(&found, first.measured).into_iter().collect();
     let finding = question.answer([one.study.name.as_str()], &facts);
-    Some(finding.with(Part::Table(found.table(question.id))).with(Part::Figures(drawn)))
+    Some(finding.with(Block::Table(found.table(question.id))).with(Block::Figures(drawn)))
 }

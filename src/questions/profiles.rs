@@ -2,18 +2,18 @@
 
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::paths::{first_measure, grouped};
+use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::largest;
 use crate::measure::theory::{
     TheoryIsochrone, computed_consolidation, computed_isochrone, theory_consolidation, theory_isochrones,
 };
-use crate::questions::answers::QUOTED_CELLS;
-use crate::questions::finding::{Finding, Part, Place, Question};
-use crate::questions::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question};
+use crate::questions::published_equations::QUOTED_CELLS;
 use crate::questions::words;
 use crate::record::{Record, Status};
 use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::number;
-use crate::render::page::{Figure, slug};
+use crate::render::page::{Block, Figure, slug};
 use oedometer_exact::ExactError;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_scenes::scene::{Clock, Question as SceneQuestion};
@@ -24,12 +24,11 @@ pub static PROFILES: Question = Question {
     heading: "How does the pressure fall?",
     template: include_str!("profiles.md"),
     places: &[Place::Study],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask,
 };
 
 /// Every number and name of the sentence.
-#[derive(serde::Serialize, schemars::JsonSchema)]
+#[derive(serde::Serialize)]
 struct Facts {
     /// Cells over the height of all runs that are shown.
     cells: usize,
@@ -61,7 +60,7 @@ fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
     let (cells, methods) = (shown[0].case.cells, shown.len());
     let shown = shown.iter().map(|record| record.case.method.to_string()).collect();
     let facts = Facts { cells, methods, shown };
-    Ok(Some(PROFILES.answer([one.study.name.as_str()], &facts).with(Part::Figures(figures))))
+    Ok(Some(PROFILES.answer([one.study.name.as_str()], &facts).with(Block::Figures(figures))))
 }
 
 /// Time factor of an isochrone, with the degree of consolidation where large strains make that the measure of progress.
@@ -223,7 +222,7 @@ mod tests {
             let shown = shown_records(&records, false);
             assert_eq!(shown.len(), 3);
             let found = ask(&results).expect("theory").expect("three methods");
-            let [Part::Figures(figures)] = &found.parts[..] else { panic!("{found:?}") };
+            let [Block::Figures(figures)] = &found.parts[..] else { panic!("{found:?}") };
             let answer = coincide(study.references[0], &shown);
             assert_eq!(figures.len(), if answer { 2 } else { 3 }, "the figure shows the difference");
             answer
@@ -311,7 +310,7 @@ mod tests {
             answer.sentence().expect("a sentence"),
             "Pressures over the depth on 10 cells, beside theory, of 3 methods: `GC-SRI-patch`, `GIMP-SRI`, `MPM`."
         );
-        let [Part::Figures(figures)] = &answer.parts[..] else { panic!("{answer:?}") };
+        let [Block::Figures(figures)] = &answer.parts[..] else { panic!("{answer:?}") };
         let names: Vec<&str> = figures.iter().map(|figure| figure.name.as_str()).collect();
         assert_eq!(names[..2], ["isochrones-gc-sri-patch", "isochrones-mpm"]);
         assert_eq!(

@@ -7,9 +7,10 @@ use oedometer_exact::reference::{Reference, ReferenceKind};
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::law::Law;
 use oedometer_soil::material::Material;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// Cells of the mesh on which errors are quoted: the paper's.
+pub const QUOTED_CELLS: usize = 10;
 /// Load of the paper's column at large strain, Pa.
 pub const LARGE_STRAIN_LOAD: f64 = 200e3;
 /// Output times, as time factors.
@@ -20,7 +21,7 @@ const END: f64 = 10.0;
 const PLACES: usize = 200;
 
 /// How far one exact solution is from another at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Departure {
     /// Time factor.
     pub time_factor: f64,
@@ -31,7 +32,7 @@ pub struct Departure {
 }
 
 /// Differences of the printed equations from Xie & Leo's solution.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PublishedEquations {
     /// At the output times.
     pub departures: Vec<Departure>,

@@ -1,5 +1,4 @@
-//! Sentences from templates: files beside the questions and in `templates/`, filled with facts. Facts are numbers and names,
-//! templates words.
+//! Sentences from templates, files beside what fills them: facts are numbers and names, templates words.
 
 use crate::case::Quantity;
 use crate::questions::words;
@@ -9,21 +8,10 @@ use minijinja::value::Serde;
 use minijinja::{Environment, UndefinedBehavior, Value};
 use oedometer_convergence::Class;
 use oedometer_soil::wording::{clock_time, count_of, duration, typed};
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The templates by their names.
-const TEMPLATES: [(&str, &str); 6] = [
-    ("changes", include_str!("../../templates/changes.md")),
-    ("proposed", include_str!("../../templates/proposed.md")),
-    ("race-headline", include_str!("../../templates/race-headline.md")),
-    ("race-lead", include_str!("../../templates/race-lead.md")),
-    ("race-rules", include_str!("../../templates/race-rules.md")),
-    ("verdict", include_str!("../../templates/verdict.md")),
-];
-
-/// An environment that knows every template and the filters that all share.
-pub(crate) fn environment() -> Result<Environment<'static>, RenderError> {
+/// An environment that knows the filters of all templates.
+fn environment() -> Environment<'static> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     environment.add_filter("amount", |value: f64, unit: String| number::with_unit(value, &unit));
@@ -65,24 +53,15 @@ pub(crate) fn environment() -> Result<Environment<'static>, RenderError> {
     });
     environment.add_filter("time_factor", number::time_factor);
     environment.add_filter("typed", typed);
-    for (name, text) in TEMPLATES {
-        environment.add_template(name, text)?;
-    }
-    Ok(environment)
+    environment
 }
 
-/// A template filled with findings: lightly marked paragraphs.
-pub(crate) fn render(
-    environment: &Environment<'_>,
-    name: &str,
-    findings: &impl Serialize,
-) -> Result<String, RenderError> {
-    Ok(environment.get_template(name)?.render(Value::from(Serde(findings)))?.trim().to_owned())
-}
-
-/// A template of a question, filled with its facts: one line a paragraph.
-pub(crate) fn filled(template: &str, facts: &serde_json::Value) -> Result<String, RenderError> {
-    let text = environment()?.render_str(template, Value::from(Serde(facts)))?;
+/// A template filled with facts: lightly marked, one line a paragraph.
+///
+/// # Errors
+/// If the template needs what is no fact.
+pub fn filled(template: &str, facts: &impl Serialize) -> Result<String, RenderError> {
+    let text = environment().render_str(template, Value::from(Serde(facts)))?;
     Ok(paragraphs(&text).join("\n\n"))
 }
 
@@ -97,7 +76,7 @@ fn in_words(names: &[String], most: Option<usize>) -> String {
 }
 
 /// A quantity with its symbol and its least and largest value in SI; the unit of a number is empty.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Amount {
     /// Its symbol.
     pub symbol: String,
@@ -110,7 +89,7 @@ pub struct Amount {
 }
 
 /// A layer with what it does not share with the others.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Layer {
     /// Thickness, m.
     pub thickness: f64,
@@ -134,11 +113,6 @@ fn layers(all: &[Layer]) -> String {
     all.iter().map(layer).collect::<Vec<_>>().join("; ")
 }
 
-/// A template that needs no more than the shared filters.
-pub(crate) fn sentence(name: &str, findings: &impl Serialize) -> Result<String, RenderError> {
-    render(&environment()?, name, findings)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -146,13 +120,9 @@ mod tests {
     use regex_lite::Regex;
 
     #[test]
-    fn a_template_without_its_finding_is_an_error() {
-        let environment = every_filter();
-        // What needs no finding says the same on every page.
-        let fixed = ["proposed", "race-rules"];
-        let filled = every_template().into_iter().map(|(name, _)| name).filter(|name| !fixed.contains(name));
-        for name in filled.chain(["no such template"]) {
-            let told = render(&environment, name, &()).expect_err(name).to_string();
+    fn a_template_without_its_facts_is_an_error() {
+        for (name, template) in every_template() {
+            let told = filled(template, &()).expect_err(name).to_string();
             assert!(told.starts_with("a sentence of the page cannot be written: "), "{told}");
         }
     }
@@ -166,29 +136,31 @@ mod tests {
     }
 
     fn examples() -> Vec<Example> {
-        serde_json::from_str(include_str!("../../templates/examples.json")).expect("examples")
+        serde_json::from_str(include_str!("examples.json")).expect("examples")
     }
 
     /// Every template by its name, those of the questions among them.
     fn every_template() -> Vec<(&'static str, &'static str)> {
-        TEMPLATES.into_iter().chain(QUESTIONS.iter().map(|one| (one.id, one.template))).collect()
+        let of_report = [
+            ("changes", include_str!("../report/answers/changes.md")),
+            ("proposed", include_str!("../report/proposed.md")),
+            ("race-headline", include_str!("../report/answers/race-headline.md")),
+            ("race-lead", include_str!("../report/answers/race-lead.md")),
+            ("race-rules", include_str!("../report/answers/race-rules.md")),
+        ];
+        of_report.into_iter().chain(QUESTIONS.iter().map(|one| (one.id, one.template))).collect()
     }
 
-    /// All templates and their filters.
-    fn every_filter() -> Environment<'static> {
-        let mut environment = environment().expect("templates of this program");
-        for question in QUESTIONS {
-            environment.add_template(question.id, question.template).expect(question.id);
-        }
-        environment
+    fn template(name: &str) -> &'static str {
+        every_template().into_iter().find(|(known, _)| *known == name).expect(name).1
     }
 
     #[test]
     fn every_example_reads_as_its_sentence() {
-        let environment = every_filter();
-        for (place, Example { template, findings, sentence: wanted }) in examples().into_iter().enumerate() {
-            let told = render(&environment, &template, &findings).expect(&template);
-            let told = paragraphs(&told).join("\n\n");
+        for (place, Example { template: name, findings, sentence: wanted }) in
+            examples().into_iter().enumerate()
+        {
+            let told = filled(template(&name), &findings).expect(&name);
             assert_eq!(told, paragraphs(&wanted).join("\n\n"), "example {}", place + 1);
         }
     }
@@ -226,11 +198,8 @@ mod tests {
     /// Branches of a template that none of its examples takes, by what stands in them.
     fn untaken(name: &str, template: &str) -> Vec<String> {
         let (text, marks) = marked(template);
-        let mut environment = every_filter();
-        environment.add_template_owned(name.to_owned(), text.clone()).expect("a template with marks");
         let examples = examples().into_iter().filter(|example| example.template == name);
-        let told: String =
-            examples.map(|one| render(&environment, name, &one.findings).expect(name)).collect();
+        let told: String = examples.map(|one| filled(&text, &one.findings).expect(name)).collect();
         let is_untaken = |mark: &String| !told.contains(mark);
         let around = |mark: String| {
             let place = text.find(&mark).unwrap_or_default();
@@ -265,7 +234,7 @@ mod tests {
         }
     }
 
-    /// What is wrong with the template of a question: long lines, many conditions, and digits that are no fact.
+    /// What is wrong with a template: long lines, many conditions, and digits that are no fact.
     fn complaints(template: &str) -> Vec<String> {
         let tags = Regex::new(r"(?s)\{\{.*?\}\}|\{%.*?%\}|\{#.*?#\}").expect("a pattern");
         let words = tags.replace_all(template, "");
@@ -278,9 +247,9 @@ mod tests {
     }
 
     #[test]
-    fn templates_of_questions_are_short_and_have_no_number_of_their_own() {
-        for question in QUESTIONS {
-            assert_eq!(complaints(question.template), [""; 0], "{}", question.id);
+    fn templates_are_short_and_have_no_number_of_their_own() {
+        for (name, template) in every_template() {
+            assert_eq!(complaints(template), [""; 0], "{name}");
         }
         let planted = format!("at 12 cells {{{{ cells }}}}\n{}", "x".repeat(121));
         assert_eq!(complaints(&planted).len(), 2);

@@ -3,7 +3,7 @@
 use crate::case::{Quantity, Sample};
 use crate::judge::path_labels::path_labels;
 use crate::judge::paths::{Path, SeriesSummary, common_times, first_measure, grouped, level_size};
-use crate::questions::study_results::StudyResults;
+use crate::judge::study_results::StudyResults;
 use crate::questions::words;
 use crate::record::Record;
 use crate::render::number;

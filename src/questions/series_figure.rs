@@ -175,7 +175,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::{records_of, study_of};
     use crate::case::planned::Tier;
-    use crate::questions::study_results::StudyResults;
+    use crate::judge::study_results::StudyResults;
     use oedometer_convergence::Floor;
 
     fn text_of(methods: &str, rest: &str) -> String {

@@ -1,9 +1,9 @@
 //! What is the setting? Geometry and soil of a study, the settlement in the end, and what a time factor of one is on the clock.
 
 use crate::case::Case;
+use crate::judge::study_results::StudyResults;
 use crate::questions::finding::{Finding, Place, Question};
 use crate::questions::sentence::{Amount, Layer};
-use crate::questions::study_results::StudyResults;
 use oedometer_scenes::column::column_parameters;
 use oedometer_scenes::scene::Clock;
 use oedometer_soil::material::Material;
@@ -14,12 +14,11 @@ pub static SETTING: Question = Question {
     heading: "Setting",
     template: include_str!("setting.md"),
     places: &[Place::Study],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask: |studies| Ok(ask(studies)),
 };
 
 /// Every number of the sentence: the least and the largest of all cases.
-#[derive(serde::Serialize, schemars::JsonSchema)]
+#[derive(serde::Serialize)]
 struct Facts {
     /// What all layers share.
     stated: Vec<Amount>,

@@ -3,18 +3,18 @@
 
 use crate::case::{Norm, Quantity, Sample};
 use crate::judge::paths::grouped;
+use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::larger;
 use crate::measure::theory::known_reference;
-use crate::questions::finding::{Finding, Part, Place, Question};
-use crate::questions::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question};
 use crate::questions::within::{choice, problem, within};
 use crate::record::Record;
 use crate::render::number;
+use crate::render::page::Block;
 use crate::render::table::{Cell, Table, columns};
 use crate::study::check::Study;
 use oedometer_exact::ExactError;
 use oedometer_soil::wording::clock_time;
-use schemars::JsonSchema;
 use serde::Serialize;
 
 /// How does the surface settle by date? Asked of studies with outputs at times.
@@ -23,12 +23,11 @@ pub static SETTLEMENT: Question = Question {
     heading: "Settlement by date",
     template: include_str!("settlement.md"),
     places: &[Place::Terminal, Place::Study],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask,
 };
 
 /// Every number and name of the sentence.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct Facts {
     /// Label of the first run.
     run: String,
@@ -38,8 +37,6 @@ struct Facts {
     reference: String,
     /// Largest error of all settlements; `None` where no run has one to compare.
     largest_error: Option<f64>,
-    /// Settlements of each run.
-    runs: Vec<RunSettlements>,
 }
 
 fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
@@ -47,28 +44,27 @@ fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
     if one.study.is_race || !one.study.has_dates {
         return Ok(None);
     }
-    Ok(answer(&one.study.name, settlements(one.study, one.records)?))
+    Ok(answer(&one.study.name, &settlements(one.study, one.records)?))
 }
 
-fn answer(study: &str, runs: Vec<RunSettlements>) -> Option<Finding> {
+fn answer(study: &str, runs: &[RunSettlements]) -> Option<Finding> {
     let first = runs.first()?;
     let (run, others, reference) = (first.run.clone(), runs.len() - 1, first.reference.clone());
     let errors = runs.iter().flat_map(|of_run| &of_run.rows).filter_map(|row| row.error);
     let largest_error = errors.map(f64::abs).reduce(larger);
-    let shown = tables(&runs).into_iter().enumerate().map(|(place, table)| match place {
+    let shown = tables(runs).into_iter().enumerate().map(|(place, table)| match place {
         0 => table.file("settlement"),
         _ => table.file(format!("settlement-{}", place + 1)),
     });
     let shown: Vec<Table> = shown.collect();
-    let finding = SETTLEMENT.answer([study], &Facts { run, others, reference, largest_error, runs });
-    Some(shown.into_iter().fold(finding, |finding, table| finding.with(Part::Table(table))))
+    let finding = SETTLEMENT.answer([study], &Facts { run, others, reference, largest_error });
+    Some(shown.into_iter().fold(finding, |finding, table| finding.with(Block::Table(table))))
 }
 
 /// Most problems of a study whose settlements are listed: of more nobody reads them.
 const MOST_PROBLEMS: usize = 4;
 
 /// The settlement of one problem at every output.
-#[derive(Serialize, JsonSchema)]
 struct RunSettlements {
     /// Label of the run.
     run: String,
@@ -79,7 +75,7 @@ struct RunSettlements {
 }
 
 /// The settlement at one output.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug)]
 struct SettlementRow {
     /// Time, s.
     seconds: f64,
@@ -260,7 +256,7 @@ mod tests {
             table_of_run(&found).rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
         assert_eq!(shown[0], ["365 days", "0.08536", "45.7 %", "33.8", "33.46", "-1.00 %"]);
         assert_eq!(shown[1], ["40 days", "0.08536", "–", "33.8", "–", "–"]);
-        let answer = answer("s", vec![found]).expect("a run");
+        let answer = answer("s", &[found]).expect("a run");
         let told = "`MPM` is at most 1.00 % off Terzaghi's solution with compressible water.";
         assert_eq!(answer.sentence().expect("a sentence"), told);
     }

@@ -3,12 +3,12 @@
 
 use crate::case::Case;
 use crate::judge::paths::grouped;
+use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::largest;
-use crate::questions::finding::{Finding, Part, Place, Question};
-use crate::questions::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question};
 use crate::record::{CriticalStep, Probe, Record};
 use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
-use crate::render::page::{Figure, slug};
+use crate::render::page::{Block, Figure, slug};
 use crate::render::table::{Cell, Mood, Table, columns};
 
 /// Which steps are stable?
@@ -17,12 +17,11 @@ pub static STABILITY: Question = Question {
     heading: "Which steps are stable?",
     template: include_str!("stability.md"),
     places: &[Place::Study],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask: |studies| Ok(ask(studies)),
 };
 
 /// Every number of the sentence.
-#[derive(serde::Serialize, schemars::JsonSchema)]
+#[derive(serde::Serialize)]
 struct Facts {
     /// Cases whose critical step was searched.
     cases: usize,
@@ -49,8 +48,8 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
     };
     let maps = maps_of(one.records).iter().map(figure).collect();
     let summary = "Every case with the runs just below and above its limit".to_owned();
-    let finding = STABILITY.answer([one.study.name.as_str()], &facts).with(Part::Figures(maps));
-    Some(finding.with(Part::Details(summary, vec![Part::Table(table(one.records))])))
+    let finding = STABILITY.answer([one.study.name.as_str()], &facts).with(Block::Figures(maps));
+    Some(finding.with(Block::Details { summary, blocks: vec![Block::Table(table(one.records))] }))
 }
 
 /// How the axis of a map is drawn.

@@ -1,11 +1,9 @@
-//! Errors and oscillation of the methods over Poisson's ratio of the skeleton, through consolidation.
+//! Errors of the methods over Poisson's ratio of the skeleton, through consolidation.
 
 use crate::case::{Quantity, Sample, SolverName};
 use crate::judge::paths::{first_error, grouped};
-use crate::measure::fields::PlaneField;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
-use oedometer_exact::ExactError;
 use oedometer_problem::outcome::Failure;
 use std::collections::BTreeSet;
 
@@ -36,9 +34,8 @@ pub struct SweepRow {
     pub method: SolverName,
     /// Time factor of the output.
     pub time_factor: f64,
-    /// At each ratio the relative L2 errors of the nodal displacement and of the pressure at the points, and the oscillation index
-    /// of the pressure.
-    pub found: Vec<[Option<f64>; 3]>,
+    /// At each ratio the relative L2 errors of the nodal displacement and of the pressure at the points.
+    pub found: Vec<[Option<f64>; 2]>,
     /// How the run at each value failed, where it did: such a run has no result that could be lost.
     pub failed: Vec<Option<String>>,
 }
@@ -49,8 +46,7 @@ pub const KEPT: f64 = 0.1;
 impl SweepRow {
     /// Errors of displacement and pressure at a value of the sweep.
     pub fn errors(&self, place: usize) -> [Option<f64>; 2] {
-        let [displacement, pressure, _] = self.found[place];
-        [displacement, pressure]
+        self.found[place]
     }
 
     /// The first value of the sweep at which the result of a run that ended is lost; nothing where it is kept at all of
@@ -95,16 +91,13 @@ pub struct StiffnessSweep {
 impl StiffnessSweep {
     /// The sweep of a study's records on one mesh; `None` where the study has none. Step sizes may
     /// differ: a stiffer skeleton consolidates faster.
-    ///
-    /// # Errors
-    /// When a reference refuses a case.
-    pub fn new(study: &Study, records: &[Record]) -> Result<Option<Self>, ExactError> {
+    pub fn new(study: &Study, records: &[Record]) -> Option<Self> {
         // The fields under a footing are not unique.
         if !study.scene.measures(Quantity::Pressure) {
-            return Ok(None);
+            return None;
         }
         let implicit = || records.iter().filter(|record| !record.case.is_explicit());
-        let Some(usual) = usual_water(implicit()) else { return Ok(None) };
+        let usual = usual_water(implicit())?;
         let begun = || implicit().filter(|record| record.case.material.water_bulk_modulus == usual);
         let swept = begun().filter(|record| record.status == Status::Ok);
         // The mesh and the outputs with which most methods ran in most soils, of equals the finest.
@@ -117,13 +110,8 @@ impl StiffnessSweep {
             records.iter().map(run).collect::<BTreeSet<_>>().len()
         };
         let meshes = grouped(swept.clone(), |record| mesh(record));
-        let Some((_, shown)) =
-            meshes.into_iter().max_by_key(|(mesh, records)| (runs(records), mesh.0, mesh.1))
-        else {
-            return Ok(None);
-        };
-        let hardest = shown.into_iter().max_by(|a, b| ratio_of(a).total_cmp(&ratio_of(b)));
-        let Some(hardest) = hardest else { return Ok(None) };
+        let (_, shown) = meshes.into_iter().max_by_key(|(mesh, records)| (runs(records), mesh.0, mesh.1))?;
+        let hardest = shown.into_iter().max_by(|a, b| ratio_of(a).total_cmp(&ratio_of(b)))?;
         let alike: Vec<&Record> = swept.filter(|record| mesh(record) == mesh(hardest)).collect();
         let failed: Vec<&Record> = begun()
             .filter(|record| record.status.failure().is_some() && mesh(record) == mesh(hardest))
@@ -138,14 +126,15 @@ impl StiffnessSweep {
             2 * methods_of(both().filter(|record| ratio_of(record) == *value)).len() >= methods.len()
         });
         if values.len() < LEAST_VALUES {
-            return Ok(None);
+            return None;
         }
         let time_factors = hardest.case.time_factors.to_vec();
         let reference = study.references[0].name();
         let found = |method: SolverName, time_factor: f64, value: f64| {
             let record =
                 alike.iter().find(|record| record.case.method == method && ratio_of(record) == value);
-            record.map_or(Ok([None; 3]), |record| found(record, time_factor, reference))
+            let error = |quantity, sample| first_error(record?, quantity, sample, reference, time_factor);
+            [error(Quantity::Displacement, Sample::Nodes), error(Quantity::Pressure, Sample::Points)]
         };
         let failure = |method: SolverName, value: f64| {
             let is_of = |record: &&&Record| record.case.method == method && ratio_of(record) == value;
@@ -154,8 +143,7 @@ impl StiffnessSweep {
         let mut rows = Vec::new();
         for time_factor in time_factors.iter().copied() {
             for method in methods.iter().copied() {
-                let found = values.iter().map(|value| found(method, time_factor, *value));
-                let found = found.collect::<Result<_, _>>()?;
+                let found = values.iter().map(|value| found(method, time_factor, *value)).collect();
                 let failed = values.iter().map(|value| failure(method, *value)).collect();
                 let row = SweepRow { method, time_factor, found, failed };
                 if row.runs() >= LEAST_VALUES || row.failed_from().is_some() {
@@ -163,22 +151,13 @@ impl StiffnessSweep {
                 }
             }
         }
-        Ok(Some(Self { cells: hardest.case.cells, values, time_factors, rows }))
+        Some(Self { cells: hardest.case.cells, values, time_factors, rows })
     }
 
     /// The rows of one output.
     pub fn at(&self, time_factor: f64) -> impl Iterator<Item = &SweepRow> {
         self.rows.iter().filter(move |row| row.time_factor == time_factor)
     }
-}
-
-fn found(record: &Record, time_factor: f64, reference: &str) -> Result<[Option<f64>; 3], ExactError> {
-    let error = |quantity, sample| first_error(record, quantity, sample, reference, time_factor);
-    Ok([
-        error(Quantity::Displacement, Sample::Nodes),
-        error(Quantity::Pressure, Sample::Points),
-        PlaneField::of(record, time_factor)?.map(|field| field.oscillation_index()),
-    ])
 }
 
 #[cfg(test)]
@@ -207,16 +186,14 @@ mod tests {
             let error = mark(record.case.cells, place_of(record));
             record.errors.iter_mut().for_each(|row| row.value = error);
         }
-        let sweep =
-            |records: &[Record]| StiffnessSweep::new(&study, records).expect("references take the cases");
+        let sweep = |records: &[Record]| StiffnessSweep::new(&study, records);
         let cells = |records: &[Record]| sweep(records).map(|found| found.cells);
         for _ in 0..2 {
             let found = sweep(&records).expect("three values");
             assert_eq!((found.cells, &found.values[..]), (16, &values[..]));
             let row = found.at(0.1).next().expect("a row");
             let expected = [0, 1, 2].map(|place| [Some(mark(16, place)); 2]);
-            let errors: Vec<[Option<f64>; 2]> = row.found.iter().map(|one| [one[0], one[1]]).collect();
-            assert_eq!(errors, expected);
+            assert_eq!(row.found, expected);
             records.reverse();
         }
         // Without the run of the finest mesh in the least compressible soil, the next one is shown.
@@ -257,6 +234,6 @@ mod tests {
                     integrator = ['implicit']\ncells = [2]\ntime_step = [{ growth = 0.5 }]\npoissons_ratio = [0.3, 0.4]\n";
         let study = Study::check(&StudySource { name: "s.toml".to_owned(), text: text.to_owned() });
         let found = StiffnessSweep::new(&study.expect("a sound study"), &records_of(text));
-        assert_eq!(found.expect("no reference is asked"), None);
+        assert_eq!(found, None);
     }
 }

@@ -2,15 +2,15 @@
 
 use crate::case::{Quantity, Sample};
 use crate::judge::paths::grouped;
-use crate::questions::finding::{Finding, Part, Place, Question, best};
+use crate::judge::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question, best};
 use crate::questions::series::{LevelError, Series, SeriesTable, name_of_level};
 use crate::questions::series_figure::figure;
-use crate::questions::study_results::StudyResults;
 use crate::record::{Record, Status};
+use crate::render::page::Block;
 use crate::study::expectation::Axis;
 use oedometer_convergence::Class;
 use oedometer_exact::ExactError;
-use schemars::JsonSchema;
 use serde::Serialize;
 
 /// What does the time step change?
@@ -19,7 +19,6 @@ pub static TIME_STEP: Question = Question {
     heading: "What does the time step change?",
     template: include_str!("time-step.md"),
     places: &[Place::Terminal, Place::Study, Place::Report],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask,
 };
 
@@ -30,7 +29,7 @@ const STEP_COUNTS: f64 = 1.1;
 const MOST_NAMED: usize = 4;
 
 /// Every number and name of the sentence.
-#[derive(Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, PartialEq, Serialize)]
 struct Facts {
     /// Time factor.
     time_factor: f64,
@@ -45,7 +44,7 @@ struct Facts {
 }
 
 /// An order in the step.
-#[derive(Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, PartialEq, Serialize)]
 struct StepOrder {
     /// Class of the series; none of fewer than three differences.
     class: Option<Class>,
@@ -56,7 +55,7 @@ struct StepOrder {
 }
 
 /// The smallest step that failed.
-#[derive(Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, PartialEq, Serialize)]
 struct UnstableStep {
     /// Label of the runs.
     run: String,
@@ -67,7 +66,7 @@ struct UnstableStep {
 }
 
 /// Errors of the pressure with the largest and the smallest step that reached the end.
-#[derive(Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, PartialEq, Serialize)]
 struct StepChange {
     /// Label of the runs.
     run: String,
@@ -92,8 +91,8 @@ fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
     let drawn = figure(&found, (Quantity::Pressure, Sample::Points));
     let finding = TIME_STEP
         .answer([one.study.name.as_str()], &facts)
-        .with(Part::Table(found.table(TIME_STEP.id)))
-        .with(Part::Figures(drawn.into_iter().collect()));
+        .with(Block::Table(found.table(TIME_STEP.id)))
+        .with(Block::Figures(drawn.into_iter().collect()));
     Ok(Some(finding))
 }
 

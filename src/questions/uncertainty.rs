@@ -1,8 +1,9 @@
 //! How certain are values without an exact solution? Their numerical uncertainty from three levels and more.
 
+use crate::judge::study_results::StudyResults;
 use crate::judge::verdict::Judgement;
-use crate::questions::finding::{Finding, Part, Place, Question};
-use crate::questions::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question};
+use crate::render::page::Block;
 use crate::render::table::{Cell, Table, columns};
 use oedometer_convergence::{Behaviour, NumericalUncertainty};
 
@@ -12,12 +13,11 @@ pub static UNCERTAINTY: Question = Question {
     heading: "How certain are values without an exact solution?",
     template: include_str!("uncertainty.md"),
     places: &[Place::Study],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask: |studies| Ok(ask(studies)),
 };
 
 /// Every number of the sentence.
-#[derive(serde::Serialize, schemars::JsonSchema)]
+#[derive(serde::Serialize)]
 struct Facts {
     /// Values that the study asks for.
     values: usize,
@@ -31,7 +31,7 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
     let found = one.check.judgements.iter().filter_map(|judgement| judgement.uncertainty.as_ref());
     let largest = found.map(NumericalUncertainty::relative).fold(0.0, f64::max);
     let facts = Facts { values: table.rows.len(), largest };
-    Some(UNCERTAINTY.answer([one.study.name.as_str()], &facts).with(Part::Table(table)))
+    Some(UNCERTAINTY.answer([one.study.name.as_str()], &facts).with(Block::Table(table)))
 }
 
 /// One row per requested value; `None` without such values.

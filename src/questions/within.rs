@@ -5,17 +5,17 @@ use crate::case::grouping::distinct;
 use crate::case::{Case, Quantity, Sample};
 use crate::judge::paths::grouped;
 use crate::judge::reaching::QuotedRuns;
-use crate::questions::finding::{Finding, Part, Place, Question};
-use crate::questions::study_results::StudyResults;
+use crate::judge::study_results::StudyResults;
+use crate::questions::finding::{Finding, Place, Question};
 use crate::questions::words;
 use crate::record::calibration::cost_of;
 use crate::record::{ErrorRow, Record};
 use crate::render::number;
+use crate::render::page::Block;
 use crate::render::table::{Cell, Mood, Table, columns};
 use crate::study::check::Study;
 use oedometer_problem::time_step::TimeStep;
 use oedometer_soil::wording::duration;
-use schemars::JsonSchema;
 use serde::Serialize;
 
 /// What comes within a bound, and at what cost?
@@ -24,12 +24,11 @@ pub static WITHIN: Question = Question {
     heading: "What comes within a bound?",
     template: include_str!("within.md"),
     places: &[Place::Terminal, Place::Study],
-    facts: |schemas| schemas.subschema_for::<Facts>(),
     ask: |studies| Ok(ask(studies)),
 };
 
 /// Every number and name of the sentence.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct Facts {
     /// The larger bound.
     bound: f64,
@@ -38,11 +37,11 @@ struct Facts {
     /// Quantities that come within it, each by the cheapest choice.
     reached: Vec<ChoiceFacts>,
     /// Quantities that do not, each with the choice of the least error.
-    missed: Vec<ChoiceFacts>,
+    missed: Vec<MissedFacts>,
 }
 
 /// A method and mesh with the largest error over all outputs and problems.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct ChoiceFacts {
     /// Quantity.
     quantity: Quantity,
@@ -56,6 +55,19 @@ struct ChoiceFacts {
     time_factor: f64,
     /// Time of that output, s.
     seconds: f64,
+}
+
+/// The choice with the least error.
+#[derive(Serialize)]
+struct MissedFacts {
+    /// Quantity.
+    quantity: Quantity,
+    /// Method, or name of another solver.
+    method: String,
+    /// Cells over the height.
+    cells: usize,
+    /// Largest error.
+    error: f64,
 }
 
 fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
@@ -80,12 +92,16 @@ fn answer(study: &str, all: &[QuantityWithin]) -> Option<Finding> {
         bound,
         problems: all[0].problems,
         reached: reached.collect(),
-        missed: missed.map(|asked| of(asked, &asked.best)).collect(),
+        missed: missed
+            .map(|asked| MissedFacts {
+                quantity: asked.quantity,
+                method: asked.best.method.clone(),
+                cells: asked.best.cells,
+                error: asked.best.error,
+            })
+            .collect(),
     };
-    let finding = WITHIN.answer([study], &facts).with(Part::Table(table(all)));
-    let others =
-        others(all).map(|table| Part::Details("What else comes within".to_owned(), vec![Part::Table(table)]));
-    Some(others.into_iter().fold(finding, Finding::with))
+    Some(WITHIN.answer([study], &facts).with(Block::Table(table(all))))
 }
 
 /// A row per quantity and bound: the cheapest choice, or where none stays within, the one with the least error.
@@ -184,34 +200,6 @@ fn far_words(all: &[QuantityWithin]) -> Option<String> {
     (!methods.is_empty()).then(|| format!("off by more than {far} % on the most cells: {named}{more}"))
 }
 
-/// Other methods and integrators within the bounds; `None` where there is none.
-fn others(all: &[QuantityWithin]) -> Option<Table> {
-    let mut rows = Vec::new();
-    for (asked, bound) in all.iter().flat_map(|asked| asked.bounds.iter().map(move |bound| (asked, bound))) {
-        let mut row = |who: String, cells: Option<usize>, is_confirmed: bool, ratio: Option<f64>| {
-            rows.push(vec![
-                words::quantity(asked.quantity).into(),
-                Cell::Text(format!("{} %", number::number(100.0 * bound.bound))),
-                if is_confirmed { Cell::Code(who) } else { Cell::Verdict(Mood::Note, who) },
-                cells.map_or(Cell::missing("no run reaches it"), |cells| Cell::Count(cells as u64)),
-                Cell::of(ratio, Cell::Number, "of another method on its coarsest mesh"),
-            ]);
-        };
-        for one in &bound.others {
-            row(one.method.clone(), Some(one.cells), one.is_confirmed, None);
-        }
-        for one in &bound.integrators {
-            let choice = one.choice.as_ref();
-            let method = choice.map_or(String::new(), |choice| format!("{}, ", choice.method));
-            let is_confirmed = choice.is_some_and(|choice| choice.is_confirmed);
-            let cells = choice.map(|choice| choice.cells);
-            row(method + &one.integrator, cells, is_confirmed, one.cost_ratio);
-        }
-    }
-    let header = "error of | > bound | method | > cells | > work over the least";
-    Table::of("Others within the bounds", columns(header), rows).file("within-others").unless_empty()
-}
-
 /// Bounds for which the cheapest choice is looked for.
 const BOUNDS: [f64; 2] = [0.01, 0.001];
 
@@ -253,21 +241,6 @@ pub struct BoundWithin {
     pub bound: f64,
     /// `None` where no choice stays within it.
     pub choice: Option<WithinFinding>,
-    /// Other methods that stay within it too, each on the coarsest mesh on which it does.
-    pub others: Vec<OtherMethod>,
-    /// What the other integrators of the study take; empty where no choice stays within it, or work is not counted.
-    pub integrators: Vec<IntegratorWithin>,
-}
-
-/// Another method within the bound.
-#[derive(Clone, Debug, PartialEq)]
-pub struct OtherMethod {
-    /// Method, or name of another solver.
-    pub method: String,
-    /// Cells over the height.
-    pub cells: usize,
-    /// Whether a finer mesh stays within the bound too.
-    pub is_confirmed: bool,
 }
 
 /// A method that stays far from the exact solution on its finest mesh.
@@ -279,17 +252,6 @@ pub struct FarMethod {
     pub cells: usize,
     /// Its least error there, over integrators and steps.
     pub error: f64,
-}
-
-/// What another integrator takes for the same bound.
-#[derive(Clone, Debug, PartialEq)]
-pub struct IntegratorWithin {
-    /// Integrator.
-    pub integrator: String,
-    /// Its cheapest choice within the bound.
-    pub choice: Option<WithinFinding>,
-    /// Counted work of that choice over that of the cheapest one.
-    pub cost_ratio: Option<f64>,
 }
 
 /// Method, mesh and step, with the largest error over all outputs and problems.
@@ -396,10 +358,8 @@ fn quantity_within(
     });
     let best = best?.0.clone();
     let choices: Vec<&WithinFinding> = choices.iter().map(|(choice, _)| choice).collect();
-    // Beside another program, whose work is not counted, the coarsest mesh stands first.
     let is_counted = choices.iter().all(|choice| choice.cost > 0.0);
-    let integrators = distinct(choices.iter().map(|choice| choice.integrator.as_str()));
-    let bounds = BOUNDS.map(|bound| bound_within(bound, &within(bound), &integrators, is_counted));
+    let bounds = BOUNDS.map(|bound| BoundWithin { bound, choice: cheapest(within(bound), is_counted) });
     let (reference, far) = (reference.to_owned(), far_methods(&choices));
     Some(QuantityWithin { quantity, sample, reference, problems, bounds: bounds.to_vec(), best, far })
 }
@@ -421,34 +381,10 @@ fn far_methods(choices: &[&WithinFinding]) -> Vec<FarMethod> {
     far
 }
 
-fn bound_within(bound: f64, fits: &[WithinFinding], integrators: &[&str], is_counted: bool) -> BoundWithin {
+/// The cheapest choice; beside another program, whose work is not counted, the one on the coarsest mesh.
+fn cheapest(fits: Vec<WithinFinding>, is_counted: bool) -> Option<WithinFinding> {
     let cost = |choice: &WithinFinding| if is_counted { choice.cost } else { 0.0 };
-    let cheapest_of = |integrator: Option<&str>| {
-        let of = fits.iter().filter(|choice| integrator.is_none_or(|name| choice.integrator == name));
-        of.min_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.cells.cmp(&b.cells)))
-    };
-    let Some(cheapest) = cheapest_of(None) else {
-        return BoundWithin { bound, choice: None, others: Vec::new(), integrators: Vec::new() };
-    };
-    let methods = distinct(fits.iter().map(|choice| choice.method.as_str()));
-    let others = methods.into_iter().filter(|method| *method != cheapest.method).filter_map(|method| {
-        let of_method = fits.iter().filter(|choice| choice.method == method);
-        let coarsest = of_method.min_by_key(|choice| (choice.cells, !choice.is_confirmed))?;
-        let WithinFinding { cells, is_confirmed, .. } = *coarsest;
-        Some(OtherMethod { method: method.to_owned(), cells, is_confirmed })
-    });
-    let integrators = integrators.iter().filter(|name| is_counted && **name != cheapest.integrator);
-    let integrators = integrators.map(|name| {
-        let choice = cheapest_of(Some(name));
-        let cost_ratio = choice.map(|choice| choice.cost / cheapest.cost);
-        IntegratorWithin { integrator: (*name).to_owned(), choice: choice.cloned(), cost_ratio }
-    });
-    BoundWithin {
-        bound,
-        choice: Some(cheapest.clone()),
-        others: others.collect(),
-        integrators: integrators.collect(),
-    }
+    fits.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.cells.cmp(&b.cells)))
 }
 
 impl WithinFinding {
@@ -591,80 +527,27 @@ mod tests {
         within(&study, &records)[0].bounds[0].choice.clone()
     }
 
-    /// Half a per cent everywhere, or 5 % for explicit steps on four cells: then eight are what explicit takes.
+    /// MPM within 1 % with the shorter steps alone, or with the longer ones too; VP nowhere.
     #[test]
-    fn what_the_other_integrator_takes_is_a_ratio_of_work() {
-        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
-                    integrator = ['implicit', 'explicit']\ncells = [4, 8]\n";
-        let (study, mut records) = solved("s", text);
-        for (explicit, expected) in
-            [([0.005, 0.005], Some(4)), ([0.05, 0.005], Some(8)), ([0.05, 0.05], None)]
-        {
-            for record in &mut records {
-                let is_explicit = record.case.integrator.name() == "explicit";
-                let error = if is_explicit { explicit[usize::from(record.case.cells == 8)] } else { 0.005 };
-                record.errors.iter_mut().for_each(|row| row.value = error);
-            }
-            let [percent, promille] = &within(&study, &records)[0].bounds[..] else { panic!("two bounds") };
-            let choice = percent.choice.as_ref().expect("a choice");
-            let [other] = &percent.integrators[..] else { panic!("{percent:?}") };
-            assert_eq!((&*choice.integrator, choice.cells, &*other.integrator), ("implicit", 4, "explicit"));
-            assert_eq!(other.choice.as_ref().map(|choice| choice.cells), expected);
-            let cost = |cells: usize| {
-                let is_it = |record: &&Record| {
-                    record.case.cells == cells && record.case.integrator.name() == "explicit"
-                };
-                cost_of(records.iter().find(is_it).expect("a run"))
-            };
-            assert_eq!(other.cost_ratio, expected.map(|cells| cost(cells) / choice.cost));
-            assert_eq!(promille.integrators, [], "no choice is within 0.1 %");
-        }
-    }
-
-    /// MPM within 1 % on any mesh; GIMP on 8 and 16 cells, and VP nowhere.
-    #[test]
-    fn another_method_has_its_coarsest_mesh_within_the_bound_and_a_far_one_its_finest() {
-        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM', 'GIMP', 'VP']\n\
-                    integrator = ['implicit']\ncells = [4, 8, 16]\n";
-        let (study, mut records) = solved("s", text);
-        for record in &mut records {
-            let error = match (&*record.case.method.to_string(), record.case.cells) {
-                ("MPM", _) | ("GIMP", 8 | 16) => 0.005,
-                ("VP", 16) => 0.3,
-                _ => 0.5,
-            };
-            record.errors.iter_mut().for_each(|row| row.value = error);
-        }
-        let answer = &within(&study, &records)[0];
-        assert_eq!(
-            answer.bounds[0].others,
-            [OtherMethod { method: "GIMP".to_owned(), cells: 8, is_confirmed: true }]
-        );
-        assert_eq!(answer.far, [FarMethod { method: "VP".to_owned(), cells: 16, error: 0.3 }]);
-    }
-
-    /// Four cells with 5 % of growth, eight with 5 and 10 %; MPM and GIMP are both within.
-    #[test]
-    fn other_methods_within_the_bound_are_named_and_so_is_the_longest_step_tried() {
-        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM', 'GIMP', 'VP']\n\
+    fn the_longest_step_tried_is_told_and_a_method_that_stays_far() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM', 'VP']\n\
                     integrator = ['implicit']\ncells = [4]\ntime_step = [{ growth = 0.05 }, { growth = 0.1 }]\n";
         let (study, mut records) = solved("s", text);
         for (allowed, is_longest) in [(0.1, true), (0.05, false)] {
             for record in &mut records {
-                let is_small = record.case.label().contains(&format!("growth={allowed}"));
-                let is_within = record.case.method.to_string() != "VP" && is_small;
-                record.errors.iter_mut().for_each(|row| row.value = if is_within { 0.005 } else { 0.5 });
+                let is_within = record.case.label().contains(&format!("growth={allowed}"));
+                let error = match (&*record.case.method.to_string(), is_within) {
+                    ("VP", _) => 0.3,
+                    (_, is_within) => [0.5, 0.005][usize::from(is_within)],
+                };
+                record.errors.iter_mut().for_each(|row| row.value = error);
             }
             let answer = &within(&study, &records)[0];
             let [percent, promille] = &answer.bounds[..] else { panic!("{answer:?}") };
             let choice = percent.choice.as_ref().expect("within");
-            let all: Vec<&str> = std::iter::once(&choice.method)
-                .chain(percent.others.iter().map(|other| &other.method))
-                .map(String::as_str)
-                .collect();
-            assert!(all.len() == 2 && all.contains(&"MPM") && all.contains(&"GIMP"), "{all:?}");
-            assert_eq!((choice.is_longest_tried, answer.problems), (is_longest, 1));
-            assert_eq!((promille.choice.as_ref(), promille.others.len()), (None, 0));
+            assert_eq!((&*choice.method, choice.is_longest_tried, answer.problems), ("MPM", is_longest, 1));
+            assert_eq!(promille.choice, None);
+            assert_eq!(answer.far, [FarMethod { method: "VP".to_owned(), cells: 4, error: 0.3 }]);
         }
     }
 

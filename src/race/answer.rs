@@ -5,12 +5,11 @@ use crate::race::group::{Group, cost_table};
 use crate::race::profile::Shares;
 use crate::race::situation::{Entry, Situation};
 use crate::record::race_errors::ReadOut;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Whether a method is still the best, or ties with it, on other terms.
 #[expect(clippy::struct_excessive_bools, reason = "each is a kind of terms")]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Holds {
     /// At each single output.
     pub time: bool,
@@ -31,7 +30,7 @@ impl Holds {
 }
 
 /// Where the method of an answer does not arrive, and why.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Missed {
     /// The situation.
     pub situation: String,
@@ -42,7 +41,7 @@ pub struct Missed {
 }
 
 /// A method to take in a group for a read-out.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
     /// The group.
     pub group: Group,

@@ -4,7 +4,6 @@
 use crate::record::race_errors::{ARRIVED, ERRORS, ROUGH, ReadOut, RunErrors};
 use crate::record::reached::reached;
 use oedometer_soil::elementary;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Other tolerances that an answer is tried at.
@@ -17,7 +16,7 @@ const FLAT: f64 = 0.4;
 const GROWS: f64 = 2.0;
 
 /// What an error is of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RaceQuantity {
     /// Pore pressure.
@@ -80,7 +79,7 @@ impl Terms {
 }
 
 /// A contender on one mesh.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Level {
     /// Cells over the height.
     pub cells: usize,
@@ -109,7 +108,7 @@ impl Level {
 }
 
 /// Where a contender arrives.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Arrival {
     /// Cells of the coarsest mesh from which on all stay within the tolerance, by half the step too where that ran.
     pub cells: usize,
@@ -151,7 +150,7 @@ pub fn arrival(levels: &[Level], terms: &Terms, most_cells: usize) -> Option<Arr
 }
 
 /// Why a contender does not arrive: each measured on its finest mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reason {
     /// The meshes end while its error falls with this order.

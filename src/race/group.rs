@@ -5,11 +5,10 @@ use crate::race::finish::Terms;
 use crate::race::profile::{CostRow, CostTable};
 use crate::race::situation::Situation;
 use crate::record::race_errors::ReadOut;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The methods of some situations that are compared with each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Group {
     /// Points move through the mesh.

@@ -16,11 +16,10 @@ use crate::race::situation::Situation;
 use crate::record::Record;
 use crate::record::race_errors::ReadOut;
 use crate::study::check::Study;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The profile of each method of a group for one read-out and quantity.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GroupProfiles {
     /// The group.
     pub group: Group,
@@ -34,7 +33,7 @@ pub struct GroupProfiles {
 }
 
 /// What an operator does to the number of situations that arrive.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Operator {
     /// Its word.
     #[expect(clippy::struct_field_names, reason = "a key of findings.json")]
@@ -55,7 +54,7 @@ const LADDER: [(&str, &str); 5] = [
 ];
 
 /// What the race has found.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RaceFindings {
     /// The answers: of each group and read-out the best method, and those that tie with it.
     pub answers: Vec<Answer>,

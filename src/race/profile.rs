@@ -1,7 +1,6 @@
 //! Performance profiles (Dolan & Moré 2002) of a table of costs, and the methods to take by them. Families of situations weigh
 //! the same, and so do the situations of a family.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Multiple of the least cost up to which a method is nearly as good as the cheapest.
@@ -33,7 +32,7 @@ pub struct CostTable {
 }
 
 /// The profile of a method: a staircase.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Profile {
     /// The method.
     pub method: String,

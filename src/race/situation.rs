@@ -14,11 +14,10 @@ use crate::study::check::Study;
 use oedometer_problem::method::Configuration;
 use oedometer_problem::wave_speeds;
 use oedometer_scenes::scene::Question;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A situation: a study whose sweeps name the race.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Situation {
     /// Its family: the first word of its name.
     pub family: String,
@@ -43,7 +42,7 @@ pub struct Situation {
 }
 
 /// A contender in a situation.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     /// The contender.
     pub contender: String,

@@ -3,7 +3,6 @@
 
 use crate::case::{Quantity, Sample};
 use crate::record::{Record, Status};
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Quantities that are judged.
@@ -16,7 +15,7 @@ pub const ARRIVED: f64 = 1e-2;
 pub const SMALLEST: f64 = 5e-3;
 
 /// Where pressure and effective stress are read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ReadOut {
     /// At the material points.
@@ -46,7 +45,7 @@ impl ReadOut {
 pub type OutputErrors = [Option<f64>; ERRORS];
 
 /// The errors of a run.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RunErrors {
     /// By read-out, at the outputs that were reached.
     pub at: [Vec<OutputErrors>; 2],

@@ -4,16 +4,17 @@
 use crate::campaign::taken_over::TakenOver;
 use crate::golden::GoldenError;
 use crate::golden::compare::{CaseChange, Change, Difference};
+use crate::judge::proposals::{ROOM_OF_ERROR, ROOM_OF_ORDER};
 use crate::judge::study_check::{CheckEnd, Objection, StudyCheck};
 use crate::judge::verdict::{Judgement, VerdictOutcome};
-use crate::questions::finding::{Finding, Part, Place};
+use crate::questions::finding::{Finding, Place};
 use crate::questions::sentence;
 use crate::questions::uncertainty;
 use crate::render::marked_text::wrapped;
 use crate::render::page::{self, Block};
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
-use crate::report::checks::failures_of;
+use crate::report::failures::failures_of;
 use crate::report::sections;
 use crate::report::tables::golden_changes::{self, judgement_of, summary};
 use oedometer_soil::wording::count_of;
@@ -99,16 +100,12 @@ fn answer(finding: &Finding, is_whole: bool) -> Result<Vec<Block>, RenderError> 
     if is_whole {
         return sections::blocks(finding, Place::Terminal);
     }
-    let tables: Vec<Part> =
-        finding.parts.iter().filter(|part| matches!(part, Part::Table(_))).cloned().collect();
-    if tables.is_empty() {
-        return Ok(vec![Block::Paragraph(finding.sentence()?)]);
-    }
-    let shown = |part: Part| match part {
-        Part::Table(table) => Block::Table(table.shown(ROWS)),
-        _ => Block::Paragraph(String::new()),
+    let table = |block: &Block| match block {
+        Block::Table(table) => Some(Block::Table(table.clone().shown(ROWS))),
+        _ => None,
     };
-    Ok(tables.into_iter().map(shown).collect())
+    let tables: Vec<Block> = finding.parts.iter().filter_map(table).collect();
+    Ok(if tables.is_empty() { vec![Block::Paragraph(finding.sentence()?)] } else { tables })
 }
 
 /// The verdict on a study in one line: as expected, not as expected, or not compared with golden values.
@@ -163,7 +160,8 @@ fn objection(one: &Objection<'_>) -> String {
 
 /// What a reader opens: expectations that could be asked, and values without a reference.
 fn after_details(check: &StudyCheck) -> Vec<(String, Vec<Block>)> {
-    let proposed = sentence::sentence("proposed", &()).map(Block::Paragraph).into_iter();
+    let room = serde_json::json!({ "errors": ROOM_OF_ERROR, "orders": ROOM_OF_ORDER });
+    let proposed = sentence::filled(include_str!("proposed.md"), &room).map(Block::Paragraph).into_iter();
     let proposed = proposed.chain([Block::Code(check.proposals.join("\n"))]).collect();
     let uncertain = uncertainty::table_of(&check.judgements);
     let proposals = count_of(check.proposals.len(), "expectation", "expectations");
@@ -396,7 +394,7 @@ mod tests {
     use crate::golden::measure::key;
     use crate::judge::study_check::CaseNote;
     use crate::render::table::columns;
-    use crate::report::checks::tests::{check, group};
+    use crate::report::failures::tests::{check, group};
     use oedometer_convergence::ParetoChange;
 
     #[test]
@@ -447,7 +445,7 @@ mod tests {
             Table::of("title", columns("a"), (0..rows).map(|row| vec![Cell::Count(row as u64)]))
         };
         let finding = |question: &'static crate::questions::finding::Question, rows: usize| {
-            question.answer(["s"], &()).with(Part::Table(table(rows)))
+            question.answer(["s"], &()).with(Block::Table(table(rows)))
         };
         let answers = [
             finding(&crate::questions::within::WITHIN, 30),

@@ -1,7 +1,7 @@
 //! A finding as blocks and as a section of a page.
 
 use crate::case::grouping::distinct;
-use crate::questions::finding::{Finding, Part, Place};
+use crate::questions::finding::{Finding, Place};
 use crate::render::RenderError;
 use crate::render::page::{Block, Figure, Section, slug};
 
@@ -26,13 +26,13 @@ pub fn blocks(finding: &Finding, place: Place) -> Result<Vec<Block>, RenderError
     if place == Place::Report && !finding.studies.is_empty() {
         sentence.extend([" Evidence: ", &links_to(finding.studies.iter().map(String::as_str)), "."]);
     }
-    let mut blocks = vec![Block::Paragraph(sentence)];
-    blocks.extend(parts_as_blocks(finding, &finding.parts, place)?);
-    Ok(blocks)
+    let parts = finding.parts.iter().filter_map(|block| shown(block, finding, place));
+    Ok(std::iter::once(Block::Paragraph(sentence)).chain(parts).collect())
 }
 
-fn parts_as_blocks(finding: &Finding, parts: &[Part], place: Place) -> Result<Vec<Block>, RenderError> {
-    // Pages of several studies may share a folder.
+/// A block as a place shows it: of a table in a report some rows, of figures those that tell more than a sentence would, on the page
+/// of a study under its name.
+fn shown(block: &Block, finding: &Finding, place: Place) -> Option<Block> {
     let named = |figure: &Figure| match (place, finding.studies.first()) {
         (Place::Study, Some(study)) => {
             let name = format!("{}-{}", slug(study), figure.name);
@@ -40,27 +40,21 @@ fn parts_as_blocks(finding: &Finding, parts: &[Part], place: Place) -> Result<Ve
         }
         _ => figure.clone(),
     };
-    let block = |part: &Part| {
-        Ok(match part {
-            Part::Sentence(template) => Block::Paragraph(finding.words(template)?),
-            Part::Table(table) if place == Place::Report && table.file.is_some() => {
-                Block::Table(table.clone().shown(REPORT_ROWS))
-            }
-            Part::Table(table) => Block::Table(table.clone()),
-            Part::Figures(figures) => Block::Figures(figures.iter().map(named).collect()),
-            Part::Views(views) => {
-                let view = |(word, parts): &(String, Vec<Part>)| {
-                    Ok((word.clone(), parts_as_blocks(finding, parts, place)?))
-                };
-                Block::Switch(views.iter().map(view).collect::<Result<_, RenderError>>()?)
-            }
-            Part::Details(summary, parts) => {
-                let (summary, blocks) = (summary.clone(), parts_as_blocks(finding, parts, place)?);
-                Block::Details { summary, blocks }
-            }
-        })
-    };
-    parts.iter().map(block).collect()
+    Some(match block {
+        Block::Table(table) if place == Place::Report && table.file.is_some() => {
+            Block::Table(table.clone().shown(REPORT_ROWS))
+        }
+        Block::Figures(figures) => {
+            let telling = figures.iter().filter(|figure| figure.chart.is_telling());
+            let telling: Vec<Figure> = telling.map(named).collect();
+            return (!telling.is_empty()).then_some(Block::Figures(telling));
+        }
+        Block::Details { summary, blocks } => Block::Details {
+            summary: summary.clone(),
+            blocks: blocks.iter().filter_map(|block| shown(block, finding, place)).collect(),
+        },
+        other => other.clone(),
+    })
 }
 
 /// The page of a study, from the answer page.

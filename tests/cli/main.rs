@@ -1,53 +1,81 @@
-//! Whole runs through the program, as its users call it.
+//! Whole runs through the program, as its users call it: a folder a command, and in `score` a file a foreign program.
 
-mod at_the_gate;
-mod attach;
-mod attach_plane;
-mod bad_input;
-mod check;
-mod cluster;
-mod critical_step;
-mod distinct;
-mod ends;
-mod escapes;
-mod every_command;
-mod files;
-mod first_hour;
-mod foreign;
-mod gate;
-mod gone;
-mod impossible_results;
-mod inputs_first;
-mod manual;
-mod manufactured;
-mod mapping;
-mod over_time;
-mod over_time_attached;
-mod own_answers;
 mod packs;
-mod place;
-mod planted_bug;
-mod planted_damage;
-mod plate_and_weight;
-mod portable;
-mod presets;
-mod problems;
 mod program;
-mod proposed;
-mod readme;
-mod release;
-mod report_rules;
-mod report_tables;
-mod run;
-mod score;
-mod shelf;
-mod signals;
-mod soils;
-mod solve;
-mod store;
-mod streams;
-mod tools;
-mod trust;
-mod units;
-mod whole_attached;
-mod wide;
+
+mod all_commands {
+    mod bad_input;
+    mod escapes;
+    mod exit_codes;
+    mod first_hour;
+    pub mod outputs;
+    pub mod place;
+    mod streams;
+    mod tools;
+}
+mod check {
+    mod given_results;
+    mod impossible_results;
+    mod other_inputs;
+    mod planted_bug;
+    mod proposed;
+    mod refused;
+    mod verdicts;
+}
+mod exact {
+    mod portable;
+    mod problems;
+    mod shelf;
+}
+mod history {
+    mod repository;
+    mod repository_of_a_solver;
+}
+mod manual {
+    mod names;
+    pub mod pages;
+    mod release;
+}
+mod report {
+    mod every_cell;
+    mod own_studies;
+    pub mod pages;
+}
+mod run {
+    mod attached;
+    mod attached_plane;
+    mod attached_whole;
+    mod damage;
+    mod many_cases;
+    mod records;
+    mod signals;
+    mod slurm;
+    mod store;
+    mod trust;
+    mod units;
+}
+mod score {
+    mod anura3d;
+    mod any_program;
+    mod cb_geo;
+    mod formats;
+    mod geotaichi;
+    mod incomplete;
+    mod kratos;
+    mod mapping;
+    mod mpm_geomechanics;
+    mod ogs;
+    mod porepy;
+    pub mod real_files;
+    mod verdicts;
+    pub mod written_files;
+}
+mod solve {
+    mod contract;
+    mod manufactured;
+    mod plate_and_weight;
+    mod soils;
+}
+mod stability {
+    mod critical_step;
+}

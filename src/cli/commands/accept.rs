@@ -32,11 +32,8 @@ pub struct Arguments {
     #[arg(long)]
     despite_failing: bool,
     /// Why the new values are right
-    #[arg(long, value_name = "TEXT", required_unless_present = "layout", default_value = "")]
+    #[arg(long, value_name = "TEXT")]
     reason: String,
-    /// Write golden files of an older layout in that of today, without running anything: no value moves
-    #[arg(long, conflicts_with_all = ["reason", "despite_failing", "jobs"])]
-    layout: bool,
     /// Folder of the golden values [default: `golden` beside the study or above]
     #[arg(long, value_name = "DIR")]
     golden: Option<PathBuf>,
@@ -49,9 +46,6 @@ pub struct Arguments {
 
 /// Runs the CI tier, as it is and with last digits changed, and writes values and tolerances.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    if arguments.layout {
-        return rewrite(arguments);
-    }
     if arguments.reason.trim().is_empty() {
         return Err(Ended::usage("a golden value needs a reason: --reason \"why the new values are right\""));
     }
@@ -81,26 +75,6 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     for (golden, older) in accepted.into_iter().zip(older) {
         let folder = folder_of(&golden.study);
         keep(golden, older.as_ref(), &folder)?;
-    }
-    Ok(Exit::Pass)
-}
-
-/// Writes the golden files of an older layout in that of today.
-fn rewrite(arguments: &Arguments) -> anyhow::Result<Exit> {
-    let chosen = arguments.studies.chosen()?;
-    for study in with_golden(load(&chosen)?, !arguments.studies.names_none())? {
-        let folder = golden_folder(arguments.golden.as_deref(), &study.name, &chosen);
-        let Some(golden) = older_of(&folder, &study.name)? else {
-            say!("{}: there is no golden file in {}", study.name, folder.display());
-            continue;
-        };
-        if !golden.is_older {
-            say!("{}: its golden file has the layout of today", study.name);
-            continue;
-        }
-        let golden = golden.in_todays_layout(&study.cases(Tier::Full));
-        let path = golden.write(&folder)?;
-        say!("{}: {} values in {}", study.name, golden.values.len(), path.display());
     }
     Ok(Exit::Pass)
 }

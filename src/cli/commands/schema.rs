@@ -4,8 +4,6 @@ use crate::cli::exit::Exit;
 use crate::cli::output::{json_of, print_data};
 use crate::foreign::case_file::CaseFile;
 use crate::import::mapping::Mapping;
-use crate::questions::answers::ReportFindings;
-use crate::questions::findings::Findings;
 use crate::record::printed::PrintedRecord;
 use crate::study::file::StudyFile;
 use crate::study::reading::{each_part, plain_schema_of, schema_of as schema_of_toml};
@@ -36,10 +34,8 @@ pub enum Document {
     Mapping,
     /// The case file that an attached solver receives
     Case,
-    /// The findings of a report: findings.json beside the front page
+    /// The answers of a report or of a study: findings.json
     Findings,
-    /// The findings of a study: NAME.findings.json beside its page
-    StudyFindings,
 }
 
 /// The JSON Schema of a document.
@@ -48,12 +44,34 @@ pub fn schema_of(document: Document) -> Value {
         Document::Study => (schema_of_toml::<StudyFile>(), "oedometer study"),
         Document::Record => (plain_schema_of::<PrintedRecord<'_>>(), "oedometer record"),
         Document::Case => (plain_schema_of::<CaseFile>(), "oedometer case"),
-        Document::Findings => (plain_schema_of::<ReportFindings>(), "oedometer findings"),
-        Document::StudyFindings => (plain_schema_of::<Findings>(), "oedometer study findings"),
+        Document::Findings => (findings_schema(), "oedometer findings"),
         Document::Mapping => (schema_of_toml::<Mapping>(), "oedometer mapping"),
     };
     schema["title"] = title.into();
     closed(schema)
+}
+
+/// What every answer has; its facts are those of its question.
+fn findings_schema() -> Value {
+    let list = |of: &str, description: &str| json!({ "type": "array", "items": { "type": of }, "description": description });
+    let text = |description: &str| json!({ "type": "string", "description": description });
+    let table = json!({ "type": "object", "properties": {
+        "file": { "type": ["string", "null"], "description": "Name of its file." },
+        "title": text("What it is of."),
+        "columns": list("string", "Headings."),
+        "rows": list("array", "Numbers, words, or null where there is nothing."),
+    }, "required": ["file", "title", "columns", "rows"] });
+    let answer = json!({ "type": "object", "properties": {
+        "question": text("Its name, as in src/questions."),
+        "studies": list("string", "Studies that show it."),
+        "answer": text("The answer in words."),
+        "facts": { "description": "Every number and name of the words, by its key." },
+        "tables": { "type": "array", "items": table, "description": "What shows it." },
+    }, "required": ["question", "studies", "answer", "facts", "tables"] });
+    json!({ "type": "object", "properties": {
+        "schema": { "type": "integer", "description": "Version of the layout." },
+        "findings": { "type": "array", "items": answer, "description": "The answers, in the order of a page." },
+    }, "required": ["schema", "findings"] })
 }
 
 /// A schema whose objects have no other properties than those named, with descriptions of one line.

@@ -27,7 +27,7 @@ const LABEL: Font = Font { size: 13.0, colour: TEXT.light, is_bold: false };
 const TICK: Font = Font { size: TICK_FONT, colour: TEXT.light, is_bold: false };
 const NOTE: Font = Font { size: 11.0, colour: QUIET.light, is_bold: false };
 /// Width of a figure on the screen of a phone, and the most height of its plot, px.
-const NARROW: f64 = 368.0;
+pub(super) const NARROW: f64 = 368.0;
 const NARROW_HEIGHT: f64 = 280.0;
 /// The widest map that a phone shows smaller, px.
 const WIDEST_MAP: f64 = 600.0;

@@ -150,7 +150,7 @@ pub(super) fn draw_marker(area: &Area<'_>, at: Px, slot: usize, radius: f64, col
     Ok(())
 }
 
-const FONT: Font = Font { size: 12.0, colour: TEXT.light, is_bold: false };
+pub(super) const FONT: Font = Font { size: 12.0, colour: TEXT.light, is_bold: false };
 /// Width of the sample of a line, and of the gap behind it, px.
 const SAMPLE: f64 = 34.0;
 const GAP: f64 = 8.0;

@@ -1,10 +1,11 @@
 //! Dot plots with words: a row a problem, markers on a logarithmic scale, beside them why a series has none, and columns of
 //! words at the right. On a narrow screen the words stand below the markers.
 
-use crate::render::chart::looks::{Look, draw_marker, looks};
+use crate::render::chart::draw::NARROW;
+use crate::render::chart::looks::{FONT, Look, draw_marker, looks};
 use crate::render::chart::svg::{Area, Drawn, Font, Px, group, layer, line, stroke, write};
 use crate::render::chart::{Chart, Series};
-use crate::render::palette::{FRAME, GRID, QUIET, SCREEN, TEXT};
+use crate::render::palette::{FRAME, GRID, QUIET, SCREEN};
 use crate::render::script::width;
 use oedometer_soil::elementary;
 use plotters::style::text_anchor::HPos;
@@ -35,7 +36,6 @@ pub struct ChartRow {
     pub words: Vec<String>,
 }
 
-const FONT: Font = Font { size: 12.0, colour: TEXT.light, is_bold: false };
 const STRONG: Font = Font { is_bold: true, ..FONT };
 const SMALL: Font = Font { size: 10.5, ..FONT };
 const LEGEND: f64 = 20.0;
@@ -57,8 +57,6 @@ struct Places {
 }
 
 const PAD: f64 = 8.0;
-/// Width of a figure for a phone.
-const NARROW: f64 = 368.0;
 
 impl Places {
     fn wide(chart: &Chart, rows: &ChartRows) -> Self {

@@ -1,14 +1,19 @@
-//! A page as plain data, and its two writers: one self-contained HTML file, or Markdown with its
-//! figures beside it. Both come from the very same description.
+//! A page as plain data. One walk over it feeds three writers: HTML, Markdown and text say the same in the same order.
 //!
 //! Running text is lightly marked: `` `code` ``, `**strong**`, `*stressed*`, `[words](target)`; a
 //! blank line ends a paragraph. Symbols such as `T_v` get their subscripts by themselves.
 
+mod contents;
+mod html;
+mod markdown;
 mod text;
-mod writers;
+mod walk;
 
+pub(crate) use contents::{all_figures, tables_in};
+pub use contents::{figures, tables};
+pub use html::render_html;
+pub use markdown::{markdown_of, render_markdown};
 pub use text::text_of;
-pub use writers::{markdown_of, render_html, render_markdown};
 
 use crate::render::chart::Chart;
 use crate::render::table::{Mood, Table};
@@ -37,19 +42,6 @@ pub struct Page {
     pub filter: Option<String>,
     /// Name of its files. If set, the page links to its tables and figures as files.
     pub files: Option<String>,
-}
-
-impl Page {
-    /// The page without figures that show no more than a sentence would, and without sections that have nothing else.
-    #[must_use]
-    pub fn without_idle_figures(mut self) -> Self {
-        for section in &mut self.sections {
-            let blocks = std::mem::take(&mut section.blocks);
-            section.blocks = blocks.into_iter().filter_map(Block::without_idle_figures).collect();
-        }
-        self.sections.retain(|section| !section.blocks.is_empty());
-        self
-    }
 }
 
 /// A highlighted sentence, lightly marked.
@@ -103,35 +95,6 @@ pub enum Block {
         /// The hidden blocks.
         blocks: Vec<Block>,
     },
-}
-
-impl Block {
-    /// The block without figures that show no more than a sentence would; none where nothing is left.
-    fn without_idle_figures(self) -> Option<Self> {
-        let all = |blocks: Vec<Self>| -> Vec<Self> {
-            blocks.into_iter().filter_map(Self::without_idle_figures).collect()
-        };
-        match self {
-            Self::Figure(figure) => figure.chart.is_telling().then_some(Self::Figure(figure)),
-            Self::Figures(mut figures) => {
-                figures.retain(|figure| figure.chart.is_telling());
-                (!figures.is_empty()).then_some(Self::Figures(figures))
-            }
-            Self::Switch(mut choices) => {
-                for (_, blocks) in &mut choices {
-                    *blocks = all(std::mem::take(blocks));
-                }
-                choices.retain(|(_, blocks)| !blocks.is_empty());
-                (!choices.is_empty()).then_some(Self::Switch(choices))
-            }
-            Self::Beside(main, aside) => Some(Self::Beside(all(main), all(aside))),
-            Self::Details { summary, blocks } => {
-                let blocks = all(blocks);
-                (!blocks.is_empty()).then_some(Self::Details { summary, blocks })
-            }
-            other => Some(other),
-        }
-    }
 }
 
 /// A figure on a page.
@@ -196,61 +159,6 @@ impl Figure {
     }
 }
 
-/// The figures of a page: file name (without a folder) and SVG.
-///
-/// # Errors
-/// If a name is unusable or used twice, or a figure cannot be drawn.
-pub fn figures(page: &Page) -> Result<Vec<(String, String)>, RenderError> {
-    check(page)?;
-    all_figures(page)
-        .into_iter()
-        .map(|figure| Ok((format!("{}.svg", figure.name), figure.svg()?.to_owned())))
-        .collect()
-}
-
-/// Every block of a page in order, with those inside of others.
-fn all_blocks(page: &Page) -> Vec<&Block> {
-    fn collect<'a>(blocks: &'a [Block], out: &mut Vec<&'a Block>) {
-        for block in blocks {
-            out.push(block);
-            match block {
-                Block::Details { blocks, .. } => collect(blocks, out),
-                Block::Beside(main, aside) => [main, aside].into_iter().for_each(|one| collect(one, out)),
-                Block::Switch(views) => views.iter().for_each(|(_, blocks)| collect(blocks, out)),
-                _ => {}
-            }
-        }
-    }
-    let mut out = Vec::new();
-    page.sections.iter().for_each(|section| collect(&section.blocks, &mut out));
-    out
-}
-
-/// Every figure of a page, in order.
-pub(crate) fn all_figures(page: &Page) -> Vec<&Figure> {
-    let figures = all_blocks(page).into_iter().flat_map(|block| match block {
-        Block::Figure(figure) => std::slice::from_ref(figure),
-        Block::Figures(figures) => figures.as_slice(),
-        _ => &[],
-    });
-    figures.collect()
-}
-
-/// The tables of a page with the names of their files, without an ending, in order.
-pub fn tables(page: &Page) -> Vec<(String, &Table)> {
-    let name = page.files.as_deref().unwrap_or("page");
-    let tables = all_blocks(page).into_iter().filter_map(|block| match block {
-        Block::Table(table) => Some(table),
-        _ => None,
-    });
-    let mut number = 0;
-    let named = tables.map(|table| {
-        number += usize::from(table.file.is_none());
-        (table_file(name, number, table), table)
-    });
-    named.collect()
-}
-
 /// Rows that a page shows of a table that also has a file, so that a study of ten thousand cases makes a page that
 /// browsers open.
 const MOST_ROWS: usize = 200;
@@ -273,24 +181,6 @@ pub(crate) fn table_file(page: &str, number: usize, table: &Table) -> String {
         Some(name) => format!("{page}-{name}"),
         None => format!("{page}-table-{number}"),
     }
-}
-
-/// Names become files and anchors: they must be safe and unique.
-pub(crate) fn check(page: &Page) -> Result<(), RenderError> {
-    let ids: Vec<&str> = page.sections.iter().map(|s| s.id.as_str()).collect();
-    let names: Vec<&str> = all_figures(page).iter().map(|f| f.name.as_str()).collect();
-    for list in [&ids, &names] {
-        for (i, &name) in list.iter().enumerate() {
-            let usable = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "-_.".contains(c);
-            if name.is_empty() || name.starts_with('.') || !name.chars().all(usable) {
-                return Err(RenderError::Name { name: name.to_owned() });
-            }
-            if list[..i].contains(&name) {
-                return Err(RenderError::Duplicate { title: page.title.clone(), name: name.to_owned() });
-            }
-        }
-    }
-    Ok(())
 }
 
 /// A text as a usable name: `GC-SRI-patch, T_v = 0.1` becomes `gc-sri-patch-t_v-0.1`.

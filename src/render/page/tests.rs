@@ -206,7 +206,7 @@ fn figures_and_tables_are_counted_wherever_they_stand() {
     };
     let files: Vec<_> = tables(&page).into_iter().map(|(name, table)| (name, table.rows.len())).collect();
     assert_eq!(files, [1, 2, 3].map(|number| (format!("p-table-{number}"), number)));
-    assert_eq!(tables(&Page { files: None, ..page.clone() })[0].0, "page-table-1");
+    assert_eq!(tables(&Page { files: None, ..page.clone() }).len(), 0, "a page without files");
     let html = written(render_html(&page));
     for (number, name) in [(1, "a"), (1, "b"), (2, "c"), (3, "d")] {
         let link = format!("<a href=\"figures/{name}.svg\">SVG</a> <a href=\"figures/{name}.csv\">data</a>");

@@ -2,7 +2,9 @@
 
 use crate::render::RenderError;
 use crate::render::marked_text::{paragraphs, to_plain, wrapped};
-use crate::render::page::Block;
+use crate::render::page::walk::{Group, Walk, Writer};
+use crate::render::page::{Block, Figure};
+use crate::render::table::Table;
 
 /// Blocks in lines of a width, an empty line between them. What a reader of a page opens by a click is left out, unless the whole
 /// is wanted; of several views the first is shown.
@@ -10,53 +12,52 @@ use crate::render::page::Block;
 /// # Errors
 /// If a table is ragged.
 pub fn text_of(blocks: &[Block], width: usize, is_whole: bool) -> Result<String, RenderError> {
-    let texts: Result<Vec<String>, _> =
-        blocks.iter().map(|block| block_text(block, width, is_whole)).collect();
-    let texts: Vec<String> = texts?.into_iter().filter(|text| !text.is_empty()).collect();
-    Ok(texts.join("\n"))
+    let mut text = Text { parts: Vec::new(), width, is_whole };
+    Walk::default().blocks(blocks, &mut text)?;
+    Ok(text.parts.join("\n"))
 }
 
-fn block_text(block: &Block, width: usize, is_whole: bool) -> Result<String, RenderError> {
-    Ok(match block {
-        Block::Paragraph(text) => {
-            let paragraphs = paragraphs(text);
-            let lines = paragraphs.iter().map(|one| wrapped(&to_plain(one), "", "  ", width));
-            lines.collect::<Vec<_>>().join("\n")
-        }
-        Block::Code(text) => text.trim_end().to_owned() + "\n",
-        Block::Heading(text) => text.clone() + "\n",
-        Block::List(points) => points.iter().map(|one| wrapped(&to_plain(one), "", "    ", width)).collect(),
-        Block::Table(table) => table.to_text(width)?,
-        Block::Beside(main, aside) => {
-            [text_of(main, width, is_whole)?, text_of(aside, width, is_whole)?].join("\n")
-        }
-        Block::Switch(views) => match views.first() {
-            Some((_, blocks)) => text_of(blocks, width, is_whole)?,
-            None => String::new(),
-        },
-        Block::Details { summary, blocks } if is_whole => {
-            format!("{summary}\n{}", text_of(blocks, width, is_whole)?)
-        }
-        Block::Details { .. } | Block::Figure(_) | Block::Figures(_) => String::new(),
-    })
+struct Text {
+    parts: Vec<String>,
+    width: usize,
+    is_whole: bool,
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::render::table::{Table, columns};
+impl<'a> Writer<'a> for Text {
+    fn paragraph(&mut self, marked: &'a str) {
+        let lines = paragraphs(marked).into_iter().map(|one| wrapped(&to_plain(&one), "", "  ", self.width));
+        self.parts.extend(lines);
+    }
 
-    #[test]
-    fn what_is_behind_a_click_and_all_but_the_first_view_are_left_out() {
-        let table =
-            Table::of("Errors", columns("method | > error"), [vec!["MPM".into(), 0.5.to_string().into()]]);
-        let details =
-            Block::Details { summary: "more".to_owned(), blocks: vec![Block::Code("a\n b".to_owned())] };
-        let view = |word: &str| (word.to_owned(), vec![Block::Paragraph(format!("**{word}** `x y`"))]);
-        let list = Block::List(vec!["one two three four".to_owned(), "five".to_owned()]);
-        let blocks = [Block::Table(table), details, Block::Switch(vec![view("first"), view("second")]), list];
-        let told = "Errors\nmethod  error\nMPM       0.5\n\nfirst x y\n\none two three\n    four\nfive\n";
-        assert_eq!(text_of(&blocks, 13, false).expect("a table"), told);
-        assert!(text_of(&blocks, 13, true).expect("a table").contains("\nmore\na\n b\n"));
+    fn code(&mut self, lines: &'a str) {
+        self.parts.push(lines.trim_end().to_owned() + "\n");
+    }
+
+    fn heading(&mut self, words: &'a str) {
+        self.parts.push(words.to_owned() + "\n");
+    }
+
+    fn list(&mut self, points: &'a [String]) {
+        let lines = points.iter().map(|one| wrapped(&to_plain(one), "", "    ", self.width));
+        self.parts.push(lines.collect());
+    }
+
+    fn table(&mut self, table: &'a Table, _: Option<String>) -> Result<(), RenderError> {
+        self.parts.push(table.to_text(self.width)?);
+        Ok(())
+    }
+
+    fn figure(&mut self, _: &'a Figure, _: Option<usize>) -> Result<(), RenderError> {
+        Ok(())
+    }
+
+    fn open(&mut self, group: &Group<'a>) -> bool {
+        match group {
+            Group::Details(summary) if self.is_whole => self.parts.push((*summary).to_owned()),
+            Group::Details(_) => return false,
+            Group::View(place, _) => return *place == 0,
+            _ => {}
+        }
+        true
     }
 }

@@ -93,8 +93,6 @@ pub enum Cell {
     Error(f64),
     /// An order: `2.00`.
     Order(f64),
-    /// An order and the half-width of its interval: `1.98 ± 0.03`.
-    OrderWithin(f64, f64),
     /// A number of things.
     Count(u64),
     /// A share, shown as a percentage.
@@ -230,12 +228,9 @@ impl Cell {
     /// The number that a cell is sorted by, if it has one.
     pub(crate) fn value(&self) -> Option<f64> {
         match self {
-            Self::Error(v)
-            | Self::Order(v)
-            | Self::OrderWithin(v, _)
-            | Self::Percent(v)
-            | Self::Seconds(v)
-            | Self::Number(v) => Some(*v),
+            Self::Error(v) | Self::Order(v) | Self::Percent(v) | Self::Seconds(v) | Self::Number(v) => {
+                Some(*v)
+            }
             Self::Count(n) => Some(*n as f64),
             Self::Shaded { value, .. } => *value,
             _ => None,
@@ -251,9 +246,6 @@ impl Cell {
             | Self::Shaded { words: text, .. } => text.clone(),
             Self::Error(v) => number::error(*v),
             Self::Order(v) => number::order(*v),
-            Self::OrderWithin(v, half) => {
-                format!("{} ± {}", number::order(*v), number::order(*half))
-            }
             Self::Count(n) => number::count(*n),
             Self::Percent(v) => number::percent(*v),
             Self::Seconds(v) => number::seconds(*v),

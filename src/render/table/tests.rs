@@ -20,7 +20,7 @@ fn sample() -> Table {
             Cell::Code("GC-SRI-patch".into()),
             Cell::Error(5.623e-3),
             Cell::Order(1.998),
-            Cell::OrderWithin(1.98, 0.031),
+            Cell::Order(1.98),
             Cell::Count(81_750),
             Cell::Percent(-0.012),
             Cell::Seconds(0.0123),

@@ -121,8 +121,7 @@ impl Table {
         Ok(out)
     }
 
-    /// For machines: numbers with all digits, shares as fractions, times in seconds, an empty field for a missing value,
-    /// and a column of its own for the half-width of an order. Words that a spreadsheet would take for a formula stand
+    /// For machines: numbers with all digits, shares as fractions, times in seconds, an empty field for a missing value. Words that a spreadsheet would take for a formula stand
     /// behind an apostrophe.
     ///
     /// # Errors
@@ -149,25 +148,11 @@ impl Table {
 
     fn csv_with(&self, words: impl Fn(&str) -> String) -> Result<String, RenderError> {
         self.check()?;
-        let has_width: Vec<bool> = (0..self.columns.len())
-            .map(|column| self.rows.iter().any(|row| matches!(row[column], Cell::OrderWithin(..))))
-            .collect();
-        let fields = |pairs: Vec<(String, String)>| -> Vec<String> {
-            let with_width = pairs.into_iter().zip(&has_width);
-            with_width
-                .flat_map(|((value, half), wide)| [Some(value), wide.then_some(half)])
-                .flatten()
-                .collect()
-        };
-        let heading = |column: &TableColumn| {
-            let heading = column.heading();
-            (words(&heading), words(&format!("{heading} ±")))
-        };
         let mut writer = csv::Writer::from_writer(Vec::new());
         let mut write = || -> Result<(), csv::Error> {
-            writer.write_record(fields(self.columns.iter().map(heading).collect()))?;
+            writer.write_record(self.columns.iter().map(|column| words(&column.heading())))?;
             for row in &self.rows {
-                writer.write_record(fields(row.iter().map(|cell| in_csv(cell, &words)).collect()))?;
+                writer.write_record(row.iter().map(|cell| in_csv(cell, &words)))?;
             }
             Ok(())
         };
@@ -256,17 +241,14 @@ fn in_html(cell: &Cell, footnotes: &[&str]) -> String {
     }
 }
 
-/// The value of a cell, and the half-width of its interval.
-fn in_csv(cell: &Cell, words: impl Fn(&str) -> String) -> (String, String) {
-    let value = match cell {
+fn in_csv(cell: &Cell, words: impl Fn(&str) -> String) -> String {
+    match cell {
         Cell::Text(text)
         | Cell::Code(text)
         | Cell::Verdict(_, text)
         | Cell::Link { words: text, .. }
         | Cell::Shaded { value: None, words: text, .. } => words(text),
-        Cell::OrderWithin(value, half) => return (number::exact(*value), number::exact(*half)),
         Cell::Count(count) => count.to_string(),
         other => other.value().map_or(String::new(), number::exact),
-    };
-    (value, String::new())
+    }
 }

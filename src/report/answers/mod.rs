@@ -8,30 +8,52 @@ pub(crate) mod race;
 pub use race::matrix_page;
 
 use crate::history::comparison::StudyComparison;
-use crate::questions::answers::{ReportFindings, VerdictFinding};
+use crate::judge::study_results::StudyResults;
+use crate::questions::expected::EXPECTED;
 use crate::questions::finding::{Finding, Place};
+use crate::questions::list::answers;
 use crate::questions::sentence;
-use crate::questions::study_findings::AllStudies;
-use crate::record::provenance::Provenance;
+use crate::race::RaceFindings;
+use crate::record::provenance::{Origins, Provenance};
 use crate::render::RenderError;
 use crate::render::page::{Block, Callout, Page, Section};
 use crate::render::table::{Mood, Table};
-use crate::report::blocks::answers as study_answers;
 use crate::report::history_tables::comparison_tables;
 use crate::report::sections::{links_to, section};
+use oedometer_exact::ExactError;
 use oedometer_soil::wording::count_of;
 use serde::Serialize;
 
 /// What the answer page is made of.
 pub struct Answers<'a> {
-    /// The studies with what is found about each.
-    pub all: &'a AllStudies,
+    /// The studies.
+    pub studies: &'a [StudyResults<'a>],
+    /// What they answer together.
+    pub findings: Vec<Finding>,
+    /// The race to 1 %, where there was one.
+    pub race: Option<RaceFindings>,
     /// The studies that differ from their golden values; `None` where none has any.
-    pub changes: Option<&'a [StudyComparison]>,
-    /// When, where and by which command.
-    pub making: &'a Making,
-    /// What the records answer.
-    pub findings: &'a ReportFindings,
+    pub changes: Option<Vec<StudyComparison>>,
+}
+
+impl<'a> Answers<'a> {
+    /// The answers of some studies, and what changed in them.
+    ///
+    /// # Errors
+    /// When a reference refuses a case.
+    pub fn new(
+        studies: &'a [StudyResults<'a>],
+        changes: Option<Vec<StudyComparison>>,
+    ) -> Result<Self, ExactError> {
+        let race = RaceFindings::from_studies(studies.iter().map(|one| (one.study, one.records)));
+        let race = race.filter(|race| !race.situations.is_empty());
+        Ok(Self { studies, findings: answers(studies, Place::Report)?, race, changes })
+    }
+
+    /// The answer to a question.
+    fn to(&self, question: &str) -> Option<&Finding> {
+        self.findings.iter().find(|finding| finding.question.id == question)
+    }
 }
 
 /// When, where and by which command a report was made.
@@ -53,10 +75,12 @@ pub struct Making {
 
 impl Making {
     /// The line of provenance: program, commit, day, processor, time, command.
-    fn words(&self, all: &AllStudies) -> String {
-        let records = all.records;
-        let program = all.origins.main().map_or_else(String::new, program_of);
-        let several = all.origins.several_programs().map_or_else(String::new, |programs| {
+    pub fn words(&self, studies: &[StudyResults<'_>]) -> String {
+        let mut origins = Origins::default();
+        studies.iter().flat_map(|one| one.records).for_each(|record| origins.add(&record.provenance));
+        let records: usize = studies.iter().map(|one| one.records.len()).sum();
+        let program = origins.main().map_or_else(String::new, program_of);
+        let several = origins.several_programs().map_or_else(String::new, |programs| {
             format!(" The records are of more than one program: {programs}.")
         });
         let run = match self.cases_run {
@@ -89,29 +113,6 @@ fn program_of(origin: &Provenance) -> String {
     )
 }
 
-/// A question of the reader.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Question {
-    heading: &'static str,
-    /// Anchor of its section.
-    id: &'static str,
-}
-
-impl Question {
-    /// The answer: a sentence with links to the studies that show it, then what is shown.
-    fn answered<'s>(
-        self,
-        sentence: &str,
-        studies: impl IntoIterator<Item = &'s str>,
-        mut shown: Vec<Block>,
-    ) -> Section {
-        let links = links_to(studies);
-        let evidence = if links.is_empty() { String::new() } else { format!(" Evidence: {links}.") };
-        shown.insert(0, Block::Paragraph(sentence.to_owned() + &evidence));
-        Section::new(self.heading, self.id, shown)
-    }
-}
-
 /// Rows of a table on the answer page.
 const MOST_ROWS: usize = 10;
 
@@ -122,59 +123,51 @@ fn short(mut table: Table, elsewhere: &str) -> Table {
     if more > 0 { table.note(format!("{more} more: {elsewhere}")) } else { table }
 }
 
-/// The answer to a question.
-fn found<'f>(findings: &'f ReportFindings, question: &str) -> Option<&'f Finding> {
-    findings.findings.iter().find(|finding| finding.question.id == question)
-}
+/// The questions of the page behind the choice of a method, in their order; what changed stands before the first of the last.
+const ASKED: [&str; 9] =
+    ["cost", "peers", "paper", CHANGES, "locking", "convergence", "time-step", "audit", "point-sets"];
+
+/// The section of what changed.
+const CHANGES: &str = "changes";
 
 /// The answer page.
 ///
 /// # Errors
-/// When a reference refuses a case, or a template its findings.
-pub fn answer_page(answers: &Answers<'_>) -> Result<Page, RenderError> {
-    let (studies, findings) = (&answers.all.studies, answers.findings);
-    let race = findings.race.as_ref().filter(|race| !race.situations.is_empty());
-    let all = [
-        race.map(|race| race::section(race, findings)).transpose()?,
-        found(findings, "cost").map(|finding| section(finding, Place::Report)).transpose()?,
-        found(findings, "peers").map(|finding| section(finding, Place::Report)).transpose()?,
-        found(findings, "paper").map(|finding| section(finding, Place::Report)).transpose()?,
-        answers.changes.map(changes_section).transpose()?,
-        found(findings, "locking").map(|finding| section(finding, Place::Report)).transpose()?,
-        found(findings, "convergence").map(|finding| section(finding, Place::Report)).transpose()?,
-        found(findings, "time-step").map(|finding| section(finding, Place::Report)).transpose()?,
-        found(findings, "audit").map(|finding| section(finding, Place::Report)).transpose()?,
-        found(findings, "point-sets").map(|finding| section(finding, Place::Report)).transpose()?,
-    ];
-    let mut sections: Vec<Section> = all.into_iter().flatten().collect();
+/// When a template refuses its facts.
+pub fn answer_page(answers: &Answers<'_>, making: &Making) -> Result<Page, RenderError> {
+    let studies = answers.studies;
+    let mut sections = Vec::new();
+    if let Some(race) = &answers.race {
+        sections.push(race::section(race, answers)?);
+    }
+    for asked in ASKED {
+        sections.extend(match asked {
+            CHANGES => answers.changes.as_deref().map(changes_section).transpose()?,
+            _ => answers.to(asked).map(|finding| section(finding, Place::Report)).transpose()?,
+        });
+    }
     // A small report names its studies, as perhaps no answer links to them.
     let few = match studies.len() {
-        1..=FEW_STUDIES => format!(": {}", links_to(studies.iter().map(|study| study.name.as_str()))),
+        1..=FEW_STUDIES => format!(": {}", links_to(studies.iter().map(|one| one.study.name.as_str()))),
         _ => String::new(),
     };
-    let made = format!(
-        "**How was it made?** {}\n\n[All studies](studies/index.html){few}",
-        answers.making.words(answers.all)
-    );
-    let verdict = verdict(&findings.verdict)?;
+    let made =
+        format!("**How was it made?** {}\n\n[All studies](studies/index.html){few}", making.words(studies));
+    let (mood, verdict) = verdict(answers)?;
     let mut page = Page { title: "Convergence report".to_owned(), is_wide: true, ..Page::default() };
     // With a race its sentences stand first, and how it was made at the end.
-    if let Some(race) = race {
+    if let Some(race) = &answers.race {
         [page.title, page.lead] = race::headline(race)?;
         page.footer = made;
         sections.push(Section {
-            heading: "Is everything as expected?".to_owned(),
-            id: "expected".to_owned(),
-            mood: Some(verdict.0),
-            blocks: vec![Block::Paragraph(verdict.1)],
+            heading: EXPECTED.heading.to_owned(),
+            id: EXPECTED.id.to_owned(),
+            mood: Some(mood),
+            blocks: vec![Block::Paragraph(verdict)],
         });
         page.links = race::front_links(&sections, studies.len());
     } else {
-        (page.lead, page.callout) = (made, Some(verdict));
-        // What a report of one study is about.
-        if let [study] = studies.as_slice() {
-            page.lead = study_answers::lead(study)? + &page.lead;
-        }
+        (page.lead, page.callout) = (made, Some((mood, verdict)));
     }
     page.sections = sections;
     Ok(page)
@@ -184,10 +177,12 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, RenderError> {
 const FEW_STUDIES: usize = 6;
 
 /// Whether everything is as expected, in one sentence that names what is not.
-fn verdict(verdict: &VerdictFinding) -> Result<Callout, RenderError> {
-    let passes = verdict.failing.is_empty();
-    let mood = if verdict.expectations == 0 && passes { Mood::Note } else { Mood::of(passes) };
-    Ok((mood, sentence::sentence("verdict", verdict)?))
+fn verdict(answers: &Answers<'_>) -> Result<Callout, RenderError> {
+    let expects = answers.studies.iter().any(|one| !one.check.judgements.is_empty());
+    let passes = answers.studies.iter().all(|one| one.check.meets_all());
+    let mood = if passes && !expects { Mood::Note } else { Mood::of(passes) };
+    let sentence = answers.to(EXPECTED.id).map(Finding::sentence).transpose()?;
+    Ok((mood, sentence.unwrap_or_default()))
 }
 
 /// How many studies changed.
@@ -198,14 +193,15 @@ struct Changes {
 }
 
 /// The studies that differ, as `oedometer compare` shows them.
-fn changes_section(changes: &[StudyComparison]) -> Result<Section, RenderError> {
-    let question = Question { heading: "What changed?", id: "changes" };
+pub fn changes_section(changes: &[StudyComparison]) -> Result<Section, RenderError> {
     let worse = changes.iter().filter(|one| one.is_regression()).count();
-    let sentence = sentence::sentence("changes", &Changes { changed: changes.len(), worse })?;
+    let sentence = sentence::filled(include_str!("changes.md"), &Changes { changed: changes.len(), worse })?;
     let tables = comparison_tables(changes, ["the golden values", "this report"]);
-    let tables = if changes.is_empty() { Vec::new() } else { tables };
-    let block = |table| Block::Table(short(table, "listed by `oedometer compare` and `oedometer check`"));
-    Ok(question.answered(&sentence, [], tables.into_iter().map(block).collect()))
+    let shown = tables.into_iter().filter(|_| !changes.is_empty());
+    let shown =
+        shown.map(|table| Block::Table(short(table, "listed by `oedometer compare` and `oedometer check`")));
+    let blocks = std::iter::once(Block::Paragraph(sentence)).chain(shown).collect();
+    Ok(Section::new("What changed?", CHANGES, blocks))
 }
 
 #[cfg(test)]
@@ -215,19 +211,16 @@ mod tests {
     use crate::case::planned::Tier;
     use crate::golden::GoldenFile;
     use crate::history::state::StudyState;
-    use crate::judge::study_check::CaseNote;
-    use crate::questions::study_results::StudyResults;
     use crate::record::Record;
     use crate::render::table::{Cell, columns};
     use crate::study::check::Study;
 
     #[test]
     fn a_report_from_records_alone_says_so() {
-        let none = AllStudies::new(&[]).expect("no case");
         let making = Making { seconds: 1.25, command: "oedometer report".to_owned(), ..Making::default() };
-        assert!(making.words(&none).contains("rendered in 1.2 s from 0 records"), "{}", making.words(&none));
+        assert!(making.words(&[]).contains("rendered in 1.2 s from 0 records"), "{}", making.words(&[]));
         let run = Making { cases_run: 3, ..making };
-        assert!(run.words(&none).contains("with 3 of 0 cases run"));
+        assert!(run.words(&[]).contains("with 3 of 0 cases run"));
     }
 
     #[test]
@@ -272,45 +265,26 @@ mod tests {
     }
 
     #[test]
-    fn the_head_of_the_page_counts_what_is_met_and_names_what_is_not_and_few_studies() {
-        let (met, unmet, bare) =
-            (study("met", &[0.9, 0.8]), study("unmet", &[0.9, 1e-9]), study("bare", &[]));
-        let of = |all: &[(&(Study, Vec<Record>), usize)]| {
-            let results = |((study, records), wrong): &(&'_ (Study, Vec<Record>), usize)| {
-                let mut one = StudyResults::new(study, records, Tier::Full);
-                let (case, sentence) = ("a case".to_owned(), "why".to_owned());
-                one.check.unsound = vec![CaseNote { case, sentence }; *wrong];
-                let findings = ReportFindings::new(&[one]).expect("sound cases");
-                let (mood, text) = verdict(&findings.verdict).expect("a verdict");
-                format!("{mood:?} {text}")
-            };
-            all.iter().map(results).collect::<Vec<_>>()
-        };
-        assert_eq!(
-            of(&[(&met, 0), (&unmet, 0), (&met, 2), (&bare, 0), (&bare, 1)]),
-            [
-                "Pass **2 of 2 expectations met** in 1 study of 1 run.",
-                "Fail **1 of 2 expectations met** in 1 study of 1 run. Not as expected: `unmet`.",
-                "Fail **2 of 2 expectations met** in 1 study of 1 run. 2 checks of runs fail. Not as expected: `met`.",
-                "Note **No expectations** in 1 study of 1 run.",
-                "Fail **No expectations** in 1 study of 1 run. 1 check of runs fails. Not as expected: `bare`.",
-            ]
-        );
+    fn the_head_of_the_page_has_the_verdict_and_few_studies() {
         let all: Vec<_> = ["a", "b", "c", "d", "e", "f", "g"].map(|name| study(name, &[])).into();
-        for (count, links, setting) in [(1, 1, true), (2, 2, false), (6, 6, false), (7, 0, false)] {
-            let results: Vec<_> = all[..count]
-                .iter()
-                .map(|(study, records)| StudyResults::new(study, records, Tier::Full))
-                .collect();
-            let making = Making::default();
-            let findings = ReportFindings::new(&results).expect("sound cases");
-            let all = AllStudies::new(&results).expect("sound cases");
-            let answers = Answers { all: &all, changes: None, making: &making, findings: &findings };
-            let page = answer_page(&answers);
-            let lead = page.expect("a page").lead;
-            let (head, listed) = lead.split_once("(studies/index.html)").expect("a link to all");
+        let page = |all: &[(Study, Vec<Record>)]| {
+            let of = |(study, records)| StudyResults::new(study, records, Tier::Full);
+            let results: Vec<_> = all.iter().map(|(study, records)| of((study, records))).collect();
+            let answers = Answers::new(&results, None).expect("sound cases");
+            answer_page(&answers, &Making::default()).expect("a page")
+        };
+        for (count, links) in [(2, 2), (6, 6), (7, 0)] {
+            let lead = page(&all[..count]).lead;
+            let (_, listed) = lead.split_once("(studies/index.html)").expect("a link to all");
             assert_eq!(listed.matches("](studies/").count(), links, "{lead}");
-            assert_eq!(head.starts_with("*H* = 1 m"), setting, "what one study is about: {lead}");
+        }
+        for (bounds, mood, words) in [
+            (&[][..], Mood::Note, "No expectations"),
+            (&[0.9, 0.8], Mood::Pass, "2 of 2 expectations met"),
+            (&[0.9, 1e-9], Mood::Fail, "1 of 2 expectations met"),
+        ] {
+            let (found, text) = page(&[study("s", bounds)]).callout.expect("a verdict");
+            assert_eq!((found, text.contains(words)), (mood, true), "{text}");
         }
     }
 
@@ -339,7 +313,7 @@ mod tests {
         };
         let told = |records: &[Record], making: &Making| {
             let results = [StudyResults::new(&study, records, Tier::Full)];
-            making.words(&AllStudies::new(&results).expect("sound cases"))
+            making.words(&results)
         };
         let end = "· rustc, release profile · DAY · CPU · rendered in 0.0 s from 1 records · `it`";
         assert_eq!(told(&[with("1", "", true)], &making), format!("oedometer 1 · sources `abc` {end}"));
@@ -363,10 +337,6 @@ mod tests {
 
     #[test]
     fn every_study_is_linked_once() {
-        let question = Question { heading: "What changed?", id: "changes" };
-        let section = question.answered("So it is.", ["b", "a_x", "b"], vec![Block::Code("c".to_owned())]);
-        let text = "So it is. Evidence: [`b`](studies/b.html), [`a_x`](studies/a_x.html).".to_owned();
-        let blocks = vec![Block::Paragraph(text), Block::Code("c".to_owned())];
-        assert_eq!(section, Section::new("What changed?", "changes", blocks));
+        assert_eq!(links_to(["b", "a_x", "b"]), "[`b`](studies/b.html), [`a_x`](studies/a_x.html)");
     }
 }

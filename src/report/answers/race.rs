@@ -1,7 +1,7 @@
 //! Which method should I take? The first screen of the front page, and the page with every method.
 
 use crate::case::contender::CONTENDERS;
-use crate::questions::answers::ReportFindings;
+use crate::judge::study_check::StudyCheck;
 use crate::questions::choice::{
     LARGEST_TAU, SHOWN, cheapest, dot_plot, facts, family_table, places_of, practice, reason_words, words_of,
 };
@@ -12,12 +12,12 @@ use crate::race::RaceFindings;
 use crate::race::finish::{Budget, RaceQuantity, Reason, Terms};
 use crate::race::group::{Group, races};
 use crate::race::situation::{Entry, Situation};
-use crate::record::race_errors::ReadOut;
+use crate::record::race_errors::{ARRIVED, ReadOut};
 use crate::render::chart::{Chart, ChartAxis, Naming, Series, Size, Style, slots};
 use crate::render::page::{Block, Figure, Page, Section};
 use crate::render::table::{Cell, Mood, Shade, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
-use crate::report::answers::found;
+use crate::report::answers::Answers;
 use crate::report::sections::page_of;
 
 /// The page of every method.
@@ -26,7 +26,8 @@ const PAGE: &str = "race.html";
 /// The headline of the front page and what stands below it.
 pub(crate) fn headline(findings: &RaceFindings) -> Result<[String; 2], RenderError> {
     let facts = facts(findings);
-    Ok([sentence::sentence("race-headline", &facts)?, sentence::sentence("race-lead", &facts)?])
+    let [headline, lead] = [include_str!("race-headline.md"), include_str!("race-lead.md")];
+    Ok([sentence::filled(headline, &facts)?, sentence::filled(lead, &facts)?])
 }
 
 /// The links at the top of the front page: its sections by a short name, and what else there is.
@@ -37,7 +38,7 @@ pub(crate) fn front_links(sections: &[Section], studies: usize) -> Vec<(String, 
         ("paper", "The paper"),
         ("audit", "The equations"),
         ("locking", "Locking"),
-        ("converges", "Convergence"),
+        ("convergence", "Convergence"),
         ("time-step", "Time step"),
         ("changes", "Changes"),
         ("expected", "Trust"),
@@ -56,35 +57,36 @@ pub(crate) fn front_links(sections: &[Section], studies: usize) -> Vec<(String, 
 
 /// The first screen: the problems one by one, what to take by the kind of problem, and why to believe it; then the answers of
 /// the groups.
-pub(crate) fn section(race: &RaceFindings, findings: &ReportFindings) -> Result<Section, RenderError> {
+pub(crate) fn section(race: &RaceFindings, answers: &Answers<'_>) -> Result<Section, RenderError> {
     let facts = facts(race);
-    let trust = [Block::Heading("Why believe it?".to_owned()), Block::List(trust(race, findings))];
+    let trust = [Block::Heading("Why believe it?".to_owned()), Block::List(trust(race, answers))];
     let views = ReadOut::BOTH.map(|read_out| {
         let main = vec![Block::Figure(dot_plot(race, read_out))];
         let aside = [vec![Block::Table(family_table(&facts, read_out))], trust.to_vec()].concat();
         (format!("Read {}", places_of(read_out)), vec![Block::Beside(main, aside)])
     });
-    let choice = found(findings, "choice").map(Finding::sentence).transpose()?.unwrap_or_default();
+    let choice = answers.to("choice").map(Finding::sentence).transpose()?.unwrap_or_default();
     let more = format!("[Every method in every problem]({PAGE}) · [profile.csv](tables/profile.csv)");
     let blocks = vec![Block::Switch(views.to_vec()), Block::Paragraph(format!("{choice}\n\n{more}"))];
     Ok(Section::new("Which method should I take?", "choice", blocks))
 }
 
 /// What speaks for the race, and where its choice turns.
-fn trust(race: &RaceFindings, findings: &ReportFindings) -> Vec<String> {
-    let verdict = &findings.verdict;
+fn trust(race: &RaceFindings, answers: &Answers<'_>) -> Vec<String> {
+    let checks = || answers.studies.iter().map(|one| &one.check);
     let mut points = vec![format!(
         "{} of {} [expectations](#expected) met; the race's numbers are pinned by golden values, not by expectations",
-        verdict.met, verdict.expectations
+        checks().map(StudyCheck::met).sum::<usize>(),
+        checks().map(|check| check.judgements.len()).sum::<usize>()
     )];
-    let printed = found(findings, "paper").and_then(|paper| paper.facts["printed_settlement"].as_f64());
+    let printed = answers.to("paper").and_then(|paper| paper.facts["printed_settlement"].as_f64());
     points.extend(printed.map(|off| {
         format!(
             "the paper's equations as printed settle {:+.1} % in the end beside Xie & Leo's: [the audit](#paper)",
             100.0 * off
         )
     }));
-    if found(findings, "peers").is_some() {
+    if answers.to("peers").is_some() {
         points.push("other programs solve [the same column](#peers)".to_owned());
     }
     let turns = facts(race).turns();
@@ -236,7 +238,10 @@ pub fn matrix_page(findings: &RaceFindings) -> Page {
     sections.push(Section::new(
         "How to read",
         "rules",
-        vec![Block::Paragraph(sentence::sentence("race-rules", &()).unwrap_or_default())],
+        vec![Block::Paragraph(
+            sentence::filled(include_str!("race-rules.md"), &serde_json::json!({ "tolerance": ARRIVED }))
+                .unwrap_or_default(),
+        )],
     ));
     if !findings.properties.is_empty() {
         let table = Block::Table(property_table(findings));

@@ -18,7 +18,7 @@ use crate::study::check::outputs::Outputs;
 use crate::study::check::sweeps::{start_of, tell_apart};
 use crate::study::diagnostic::{Diagnostic, StudyError};
 use crate::study::expectation::{CaseExpectation, SeriesExpectation};
-use crate::study::file::{GoldenRule, OutputTable, StudyFile, StudySource};
+use crate::study::file::{GoldenRule, OutputTable, StudyFile, StudySource, SweepTable};
 use crate::study::reading::Placed;
 use crate::study::shipped::name_of;
 use crate::study::solver::ExternalSolver;
@@ -201,7 +201,6 @@ impl Checker<'_> {
         self.warnings.push(diagnostic.warning(&self.source.name, &self.source.text));
     }
 
-    #[expect(clippy::too_many_lines, reason = "the tables of a study, one after the other")]
     fn study(&mut self, file: StudyFile) -> Study {
         let (scene, task) = (*file.scene, file.task.as_deref().copied().unwrap_or_default());
         let case_seconds =
@@ -230,56 +229,10 @@ impl Checker<'_> {
             outputs.unwrap_or_else(|| Outputs::at_factors((scene.outputs)(&base.column, &base.material)));
         let references = self.references(&file.output, scene, &base.column);
         let given = self.attach_results(&file);
-        if file.sweep.is_empty() && file.result.is_empty() {
-            let end = self.source.text.trim_end().len();
-            let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
-            self.complain(
-                last_line..end,
-                "the study ends here without a [[sweep]] block",
-                "add one with at least `method` and `cells`",
-            );
-        }
+        self.has_cases(&file);
         let mut planner = Planner::default();
         for table in &file.sweep {
-            let start = start_of(table);
-            let swept = self.outputs(&table.time_factors, &table.times);
-            let outputs = swept.as_ref().unwrap_or(&outputs);
-            let loaded = |case: Case| {
-                let mut case = case.as_its_solver_knows();
-                case.column.points.name_water_points(case.points_per_cell);
-                if let Some(strain) = strain {
-                    case.column.load = load_of(strain, &case);
-                } else if scene.load == LoadKind::Pushed {
-                    // What the soil bears is what pressures are measured by.
-                    case.column.load = case.material.undrained_strength;
-                }
-                case.time_factors = outputs.of_case(&case);
-                case
-            };
-            self.for_each_entry(table, |checker, entry| {
-                // Where nothing moves a mesh that follows the soil is the same mesh.
-                let moves = scene.configuration() == Configuration::Updated || base.task == Task::Stability;
-                if entry.is_some_and(Contender::is_total) && !moves && scene.question != Question::Rest {
-                    return;
-                }
-                let before = checker.diagnostics.len();
-                let Some(mut sweep) = checker.sweep(table, &start, &common, &base, entry) else { return };
-                checker.default_integrator((table, &start), &common, (&base, &loaded), &mut sweep);
-                let unfit =
-                    |entry: &Contender| sweep.cases(&base).map(&loaded).find_map(|case| entry.unfit(&case));
-                if let Some((entry, why)) = entry.and_then(|entry| Some((entry, unfit(entry)?))) {
-                    checker.leave_out(entry.name, why);
-                    return;
-                }
-                checker.times_are_possible(outputs, sweep.cases(&base).map(&loaded));
-                checker.cases_are_possible(&file, (table, &start), sweep.cases(&base).map(&loaded));
-                // What cannot be fails the study, or is left out of a race.
-                let is_kept = entry.is_none() || checker.diagnostics.len() == before;
-                planner.reserve(sweep.count().unwrap_or(0));
-                for case in sweep.cases(&base).map(&loaded).filter(|_| is_kept) {
-                    planner.put(case, table.tier);
-                }
-            });
+            self.plan(&file, table, (&common, &base, strain), &outputs, &mut planner);
         }
         base.time_factors = outputs.of_case(&base);
         if !given.is_empty() {
@@ -326,6 +279,70 @@ impl Checker<'_> {
             not_applicable: std::mem::take(&mut self.not_applicable),
             warnings: std::mem::take(&mut self.warnings),
         }
+    }
+
+    /// Complains of a study without cases.
+    fn has_cases(&mut self, file: &StudyFile) {
+        if !file.sweep.is_empty() || !file.result.is_empty() {
+            return;
+        }
+        let end = self.source.text.trim_end().len();
+        let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
+        self.complain(
+            last_line..end,
+            "the study ends here without a [[sweep]] block",
+            "add one with at least `method` and `cells`",
+        );
+    }
+
+    /// Plans the cases of a sweep, with the load of a strain that is given, at its own outputs or those of the study.
+    fn plan(
+        &mut self,
+        file: &StudyFile,
+        table: &Placed<SweepTable>,
+        (common, base, strain): (&Common, &Case, Option<f64>),
+        outputs: &Outputs,
+        planner: &mut Planner,
+    ) {
+        let (start, scene) = (start_of(table), base.scene);
+        let swept = self.outputs(&table.time_factors, &table.times);
+        let outputs = swept.as_ref().unwrap_or(outputs);
+        let loaded = |case: Case| {
+            let mut case = case.as_its_solver_knows();
+            case.column.points.name_water_points(case.points_per_cell);
+            if let Some(strain) = strain {
+                case.column.load = load_of(strain, &case);
+            } else if scene.load == LoadKind::Pushed {
+                // What the soil bears is what pressures are measured by.
+                case.column.load = case.material.undrained_strength;
+            }
+            case.time_factors = outputs.of_case(&case);
+            case
+        };
+        self.for_each_entry(table, |checker, entry| {
+            // Where nothing moves a mesh that follows the soil is the same mesh.
+            let moves = scene.configuration() == Configuration::Updated || base.task == Task::Stability;
+            if entry.is_some_and(Contender::is_total) && !moves && scene.question != Question::Rest {
+                return;
+            }
+            let before = checker.diagnostics.len();
+            let Some(mut sweep) = checker.sweep(table, &start, common, base, entry) else { return };
+            checker.default_integrator((table, &start), common, (base, &loaded), &mut sweep);
+            let unfit =
+                |entry: &Contender| sweep.cases(base).map(&loaded).find_map(|case| entry.unfit(&case));
+            if let Some((entry, why)) = entry.and_then(|entry| Some((entry, unfit(entry)?))) {
+                checker.leave_out(entry.name, why);
+                return;
+            }
+            checker.times_are_possible(outputs, sweep.cases(base).map(&loaded));
+            checker.cases_are_possible(file, (table, &start), sweep.cases(base).map(&loaded));
+            // What cannot be fails the study, or is left out of a race.
+            let is_kept = entry.is_none() || checker.diagnostics.len() == before;
+            planner.reserve(sweep.count().unwrap_or(0));
+            for case in sweep.cases(base).map(&loaded).filter(|_| is_kept) {
+                planner.put(case, table.tier);
+            }
+        });
     }
 
     /// Whether there are golden values: what expects nothing is judged by them, and a wide tolerance judges nothing.

@@ -130,19 +130,7 @@ impl RawRow {
         let y = (self.y - mapping.origin.y) * length;
         let height = before(if is_down { body.height - y } else { y }, displacement);
         if !is_inside(height, body.height) {
-            let height_of_body = body.height;
-            return Err(refused(if mapping.is_turned {
-                format!(
-                    "the initial distance {height} m from the middle is outside the slab, whose drained side lies at \
-                     {height_of_body} m: look at the unit, the sign and the origin of `x`, whether places are initial or \
-                     current, and whether the axes are exchanged: x runs along the drained direction"
-                )
-            } else {
-                format!(
-                    "the initial height {height} m is outside the column of {height_of_body} m: look at the unit and the \
-                     sign of `y`, and at whether places are initial or current"
-                )
-            }));
+            return Err(refused(outside(height, body.height, mapping.is_turned)));
         }
         let height = height.clamp(0.0, body.height);
         let distance = self.x.map(|x| {
@@ -184,6 +172,22 @@ impl RawRow {
             set: self.set,
             origin: self.origin,
         })
+    }
+}
+
+/// The refusal of a height outside the column, or of a distance outside a slab, which is turned.
+fn outside(place: f64, extent: f64, is_turned: bool) -> String {
+    if is_turned {
+        format!(
+            "the initial distance {place} m from the middle is outside the slab, whose drained side lies at {extent} m: look at \
+             the unit, the sign and the origin of `x`, whether places are initial or current, and whether the axes are \
+             exchanged: x runs along the drained direction"
+        )
+    } else {
+        format!(
+            "the initial height {place} m is outside the column of {extent} m: look at the unit and the sign of `y`, and at \
+             whether places are initial or current"
+        )
     }
 }
 

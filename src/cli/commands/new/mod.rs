@@ -30,11 +30,6 @@ pub struct Arguments {
     /// soils, footing for a plate on soil that yields
     #[arg(long, value_name = "SCENE")]
     scene: Option<String>,
-    /// With NAME `solver`: what `new-solver` takes as its name, and its language (version 0.3).
-    #[arg(hide = true)]
-    solver: Option<PathBuf>,
-    #[arg(long, value_enum, hide = true)]
-    language: Option<Language>,
 }
 
 /// Arguments of `new-solver`.
@@ -55,19 +50,6 @@ pub fn run_solver(arguments: &SolverArguments) -> anyhow::Result<Exit> {
 
 /// Writes a new study or adapter; an existing file is kept.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    let is_solver = arguments.solver.is_some() || arguments.language.is_some();
-    if is_solver && arguments.scene.is_some() {
-        return Err(Ended::usage(
-            "`--scene` belongs to `oedometer new NAME`: `oedometer new-solver` writes an adapter for `terzaghi`",
-        ));
-    }
-    if is_solver && arguments.name.as_os_str() == "solver" {
-        let folder = arguments.solver.clone().unwrap_or_else(|| PathBuf::from("my-solver"));
-        return write_adapter(&folder, arguments.language.unwrap_or(Language::Python));
-    }
-    if is_solver {
-        return Err(Ended::usage("a second name or `--language` belongs to `oedometer new-solver NAME`"));
-    }
     let given = arguments.name.display().to_string();
     let name = name_of(&given);
     if let Some(why) = refused_name(&name) {

@@ -16,10 +16,10 @@ use crate::cli::trust::{self, TrustArguments};
 use crate::golden::GoldenFile;
 use crate::history::comparison::StudyComparison;
 use crate::history::state::StudyState;
-use crate::questions::answers::ReportFindings;
-use crate::questions::finding::Place;
+use crate::judge::study_results::StudyResults;
+use crate::questions::finding::{Place, findings_json};
 use crate::questions::list::answers;
-use crate::questions::study_findings::{AllStudies, StudyFindings};
+use crate::questions::race_tables;
 use crate::record::Record;
 use crate::record::calibration::{calibrate, calibration_csv};
 use crate::record::csv::tidy;
@@ -28,13 +28,10 @@ use crate::record::store::RecordStore;
 use crate::record::whole_file::write_rebuildable;
 use crate::render::escape::document;
 use crate::render::page::{Page, all_figures, render_html, render_markdown, slug, tables};
-use crate::report::answers::{Answers, Making, answer_page, matrix_page};
-use crate::report::blocks::index_page::index_page;
-use crate::report::blocks::study_page::study_page;
+use crate::report::answers::{Answers, Making, answer_page, changes_section, matrix_page};
 use crate::report::check_page::{Terminal, text_of_answers};
-
-use crate::questions::race_tables;
-use crate::questions::study_results::StudyResults;
+use crate::report::studies_page::studies_page;
+use crate::report::study_page::{among_others, study_page};
 use crate::study::check::Study;
 use crate::study::shipped::shipped_study;
 use oedometer_formats::input_file::read_text;
@@ -95,11 +92,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let results = with_records
         .par_iter()
         .map(|(study, report)| {
-            let file = typed_name(&study.name, &chosen);
-            StudyResults::new(study, &report.records, tier_of(study, report))
-                .from_file(file)
-                .with_page(has_page(&study.name, &chosen, arguments.studies.names_none()))
-                .with_taken_over(&report.taken_over)
+            let results = StudyResults::new(study, &report.records, tier_of(study, report));
+            StudyResults {
+                file: typed_name(&study.name, &chosen),
+                has_page: has_page(&study.name, &chosen, arguments.studies.names_none()),
+                ..results.with_taken_over(&report.taken_over)
+            }
         })
         .collect::<Vec<_>>();
     let making = Making {
@@ -112,13 +110,17 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     };
     let changes =
         changes(&studies, &reports, |study| golden_of(arguments.golden.as_deref(), study, &chosen).ok());
-    let all = AllStudies::new(&results)?;
-    let written = write_files(&arguments.out, (&results, &all), changes.as_deref(), making, start)?;
+    match results.as_slice() {
+        [one] if !one.study.is_race => {
+            write_study_alone(&arguments.out, one, changes.as_deref(), making, start)?;
+        }
+        _ => write_all(&arguments.out, &results, changes, making, start)?,
+    }
     if let [one] = results.as_slice() {
         let terminal = Terminal { width: terminal_width(), is_whole: false };
         print_data(&text_of_answers(&answers(std::slice::from_ref(one), Place::Terminal)?, terminal)?)?;
     }
-    say!("the report is {}", written.display());
+    say!("the report is {}", arguments.out.join("index.html").display());
     let is_whole = reports.iter().all(|report| report.errors.is_empty());
     let mut tally = Tally::default();
     for report in &reports {
@@ -248,86 +250,98 @@ fn command() -> String {
     std::iter::once("oedometer".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
 }
 
-/// Writes all files below a folder; the path of the answer page.
-fn write_files(
+/// Writes the report of one study: its page is the first one.
+fn write_study_alone(
     out: &Path,
-    (results, all): (&[StudyResults<'_>], &AllStudies),
+    one: &StudyResults<'_>,
     changes: Option<&[StudyComparison]>,
+    making: Making,
+    start: Instant,
+) -> anyhow::Result<()> {
+    let findings = answers(std::slice::from_ref(one), Place::Study)?;
+    let mut page = study_page(one, &findings)?;
+    page.sections.extend(changes.map(changes_section).transpose()?);
+    let making = Making { seconds: start.elapsed().as_secs_f64(), ..making };
+    page.footer = format!("**How was it made?** {}", making.words(std::slice::from_ref(one)));
+    write_page(&out.join("findings.json"), &json_of(&findings_json(&findings))?)?;
+    write_study_files(out, one)?;
+    write_both(out, "index", "README", &page)
+}
+
+/// Writes the report of several studies: a front page, the list of the studies, and the page of each that has one.
+fn write_all(
+    out: &Path,
+    results: &[StudyResults<'_>],
+    changes: Option<Vec<StudyComparison>>,
     mut making: Making,
     start: Instant,
-) -> anyhow::Result<PathBuf> {
+) -> anyhow::Result<()> {
     let studies = out.join("studies");
     // Collected before the first error is taken: the same error every time.
-    all.studies
-        .par_iter()
-        .zip(results)
-        .filter(|(study, _)| study.has_page)
-        .map(|(study, results)| write_study(&studies, study, results))
-        .collect::<Vec<_>>()
-        .into_iter()
-        .collect::<anyhow::Result<()>>()?;
-    write_both(&studies, "index", "README", &index_page(all))?;
-    let findings = ReportFindings::new(results)?;
-    write_page(&out.join("findings.json"), &(serde_json::to_string_pretty(&findings)? + "\n"))?;
-    if let Some(race) = &findings.race {
+    let written: Vec<anyhow::Result<()>> =
+        results.par_iter().filter(|one| one.has_page).map(|one| write_study(&studies, one)).collect();
+    written.into_iter().collect::<anyhow::Result<()>>()?;
+    write_both(&studies, "index", "README", &studies_page(results))?;
+    let answers = Answers::new(results, changes)?;
+    write_page(&out.join("findings.json"), &json_of(&findings_json(&answers.findings))?)?;
+    making.seconds = start.elapsed().as_secs_f64();
+    let front = Page { files: Some("answers".to_owned()), ..answer_page(&answers, &making)? };
+    write_linked(out, ["index", "README"], &front, results)?;
+    if let Some(race) = &answers.race {
         let tables = out.join("tables");
         write_page(&tables.join("race.csv"), &race_tables::whole_table(race).to_plain_csv()?)?;
         write_page(&tables.join("profile.csv"), &race_tables::profile_table(race).to_plain_csv()?)?;
-    }
-    making.seconds = start.elapsed().as_secs_f64();
-    let answers = Answers { all, changes, making: &making, findings: &findings };
-    let front = Page { files: Some("answers".to_owned()), ..answer_page(&answers)? };
-    write_linked(out, ["index", "README"], &front, results)?;
-    if let Some(race) = &findings.race {
         write_linked(out, ["race"; 2], &matrix_page(race), results)?;
     }
-    Ok(out.join("index.html"))
+    Ok(())
 }
 
-/// A page whose links to pages of studies lead to their files, where both are below the current folder.
-fn linked_to_files(page: &str, out: &Path, results: &[StudyResults<'_>]) -> String {
-    results.iter().fold(page.to_owned(), |text, result| {
-        let listed = (!result.has_page).then(|| "studies/README.md".to_owned());
-        let Some(file) = file_from(out, result).or(listed) else { return text };
-        let name = slug(&result.study.name);
-        let text = text.replace(&format!("](studies/{name}.md)"), &format!("]({file})"));
-        text.replace(&format!("](studies/{name}.md#figure-{name}-race-all)"), &format!("]({file})"))
-    })
-}
-
-/// A page of all studies: where a study has no page of its own, links lead to its file, or to the list of the studies.
+/// A page of all studies. Where a study has no page of its own, and in Markdown, whose pages of studies no repository keeps, links
+/// lead to its file, or to the list of the studies.
 fn write_linked(
     out: &Path,
     [html, markdown]: [&str; 2],
     page: &Page,
     results: &[StudyResults<'_>],
 ) -> anyhow::Result<()> {
-    write_both(out, html, markdown, page)?;
-    let without = results.iter().filter(|one| !one.has_page);
-    let linked = without.fold(render_html(page)?, |text, one| {
-        let file = file_from(out, one).unwrap_or_else(|| "studies/index.html".to_owned());
-        let name = slug(&one.study.name);
-        let text = text.replace(&format!("\"studies/{name}.html\""), &format!("\"{file}\""));
-        text.replace(&format!("\"studies/{name}.html#figure-{name}-race-all\""), &format!("\"{file}\""))
-    });
-    write_page(&out.join(format!("{html}.html")), &linked)?;
-    write_page(&out.join(format!("{markdown}.md")), &linked_to_files(&render_markdown(page)?, out, results))
+    let (mut of_html, mut of_markdown) = (render_html(page)?, render_markdown(page)?);
+    for one in results {
+        let (name, file) = (slug(&one.study.name), file_from(out, one));
+        if !one.has_page {
+            let file = file.as_deref().unwrap_or("studies/index.html");
+            of_html = of_html.replace(&format!("\"studies/{name}.html\""), &format!("\"{file}\""));
+        }
+        let listed = (!one.has_page).then(|| "studies/README.md".to_owned());
+        if let Some(file) = file.or(listed) {
+            of_markdown = of_markdown.replace(&format!("](studies/{name}.md)"), &format!("]({file})"));
+        }
+    }
+    write_page(&out.join(format!("{html}.html")), &of_html)?;
+    write_page(&out.join(format!("{markdown}.md")), &of_markdown)?;
+    write_exports(out, page)
 }
 
-/// The pages of a study with their figures and tables, its file, and its measures as CSV.
-fn write_study(studies: &Path, study: &StudyFindings, results: &StudyResults<'_>) -> anyhow::Result<()> {
-    let name = slug(&study.name);
-    write_both(studies, &name, &name, &study_page(study)?)?;
-    let file = Path::new(&results.file);
-    let text = match shipped_study(&study.name) {
+/// The page of a study among others, with its answers for programs.
+fn write_study(studies: &Path, one: &StudyResults<'_>) -> anyhow::Result<()> {
+    let name = slug(&one.study.name);
+    let findings = answers(std::slice::from_ref(one), Place::Study)?;
+    write_both(studies, &name, &name, &among_others(study_page(one, &findings)?))?;
+    write_page(&studies.join(format!("{name}.findings.json")), &json_of(&findings_json(&findings))?)?;
+    write_study_files(studies, one)
+}
+
+/// The file of a study, and its measures as CSV.
+fn write_study_files(folder: &Path, one: &StudyResults<'_>) -> anyhow::Result<()> {
+    let name = slug(&one.study.name);
+    let file = Path::new(&one.file);
+    let text = match shipped_study(&one.study.name) {
         Some(shipped) if !file.is_file() => shipped.text.clone(),
         _ => read_text(file)?,
     };
-    write_page(&studies.join(format!("{name}.toml")), &text)?;
-    let rows = results.records.iter().map(|record| tidy::rows_of(&study.name, record));
+    write_page(&folder.join(format!("{name}.toml")), &text)?;
+    let rows = one.records.iter().map(|record| tidy::rows_of(&one.study.name, record));
     let csv = tidy::header_line() + &rows.collect::<Result<String, _>>()?;
-    write_page(&studies.join("tables").join(format!("{name}.csv")), &csv)?;
-    write_page(&studies.join(format!("{name}.findings.json")), &json_of(&study.plain)?)
+    write_page(&folder.join("tables").join(format!("{name}.csv")), &csv)
 }
 
 /// A page as HTML and Markdown, with its figures and tables as files.

@@ -1,6 +1,9 @@
 use super::*;
 use crate::campaign::runner::{RunOptions, run_study};
 use crate::case::planned::Tier;
+use crate::judge::study_results::StudyResults;
+use crate::questions::finding::{Place, findings_json};
+use crate::questions::list::answers;
 use crate::study::check::Study;
 use crate::study::file::StudySource;
 use crate::study::shipped::shipped_studies;
@@ -123,14 +126,8 @@ fn undescribed(schema: &Value, at: &str, missing: &mut Vec<String>) {
 
 #[test]
 fn every_key_of_every_schema_has_a_description() {
-    for document in [
-        Document::Study,
-        Document::Record,
-        Document::Mapping,
-        Document::Case,
-        Document::Findings,
-        Document::StudyFindings,
-    ] {
+    for document in [Document::Study, Document::Record, Document::Mapping, Document::Case, Document::Findings]
+    {
         let mut missing = Vec::new();
         undescribed(&schema_of(document), "", &mut missing);
         assert!(missing.is_empty(), "{document:?}: {missing:?}");
@@ -145,9 +142,14 @@ fn the_findings_of_a_study_keep_to_their_schema() {
          integrator = ['implicit']\ncells = [2, 4, 8]\nporosity = [0.3, 0.4]\n",
     );
     records[0].status = crate::campaign::runner::failed_at(1);
-    let results = crate::questions::study_results::StudyResults::new(&study, &records, Tier::Full);
-    let found = serde_json::to_value(results.findings().expect("sound cases").plain).expect("plain data");
-    assert_eq!(breach(&schema_of(Document::StudyFindings), &found, "findings"), None);
+    let results = [StudyResults::new(&study, &records, Tier::Full)];
+    for place in [Place::Study, Place::Report] {
+        let mut found = findings_json(&answers(&results, place).expect("sound cases"));
+        assert!(found["findings"].as_array().is_some_and(|all| !all.is_empty()), "{found}");
+        assert_eq!(breach(&schema_of(Document::Findings), &found, "findings"), None);
+        found["findings"][0]["more"] = json!(1);
+        assert!(breach(&schema_of(Document::Findings), &found, "findings").is_some());
+    }
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::cli::study_files::tell_warnings;
 use crate::import::mapping::Axes;
 use crate::import::mapping::preset::convention_of;
 use crate::record::ERROR_COLUMNS;
-use crate::report::checks::{Finding, junit_of_findings};
+use crate::report::junit::{ScoredCase, junit_of_score};
 use crate::report::tables::scores;
 use crate::score::completeness::Lack;
 use crate::score::results::{Comparison, Results, Scored};
@@ -135,7 +135,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         let notes = results.all.iter().flat_map(|scored| {
             scored.score.diagnosis.iter().map(move |sentence| format!("{}: {sentence}", scored.name()))
         });
-        write_document(path, &junit_of_findings(&arguments.scene, &findings, notes)?)?;
+        write_document(path, &junit_of_score(&arguments.scene, &findings, notes)?)?;
     }
     Ok(exit)
 }
@@ -237,7 +237,7 @@ fn judged(
     below: Option<f64>,
     strict: bool,
     references: &[ReferenceKind],
-) -> anyhow::Result<(Vec<Finding>, Exit)> {
+) -> anyhow::Result<(Vec<ScoredCase>, Exit)> {
     let is_gate = strict || below.is_some();
     let mut findings = Vec::new();
     let mut is_undeclared_told = false;
@@ -255,10 +255,10 @@ fn judged(
             }
             is_undeclared_told |= is_of_mapping;
             let subject = format!("{}/{}", scored.name(), lack.name.name());
-            findings.push(Finding { subject, failure: Some(lack.sentence.clone()) });
+            findings.push(ScoredCase { subject, failure: Some(lack.sentence.clone()) });
         }
         if is_gate && scored.score.warnings.is_empty() && failing.count() == 0 {
-            findings.push(Finding { subject: format!("{}/complete", scored.name()), failure: None });
+            findings.push(ScoredCase { subject: format!("{}/complete", scored.name()), failure: None });
         }
         for note in &scored.run.notes {
             say!("note: {name}{note}");
@@ -288,7 +288,7 @@ fn judged(
 
 /// Whether every main error against the first reference is below a bound; NaN is not. Where the exact value all but
 /// vanishes, as a displacement does at `t = 0`, the error is judged on the scale of the load.
-fn errors_below(bound: f64, results: &[Scored], reference: Option<&str>) -> anyhow::Result<Vec<Finding>> {
+fn errors_below(bound: f64, results: &[Scored], reference: Option<&str>) -> anyhow::Result<Vec<ScoredCase>> {
     if !(bound.is_finite() && bound > 0.0) {
         return Err(Ended::usage(format!("`--below {bound}` is invalid: expected a positive number")));
     }
@@ -325,7 +325,7 @@ fn finding_below(
     bound: f64,
     file: &str,
     (quantity, time_factor, error, unit): (Quantity, f64, f64, &str),
-) -> Finding {
+) -> ScoredCase {
     let (name, time) = (quantity.name(), typed(time_factor));
     let scale = match (unit, quantity) {
         ("error over the load", Quantity::Displacement | Quantity::Settlement) => {
@@ -337,7 +337,7 @@ fn finding_below(
     let failure =
         format!("{file}: {name} at T_v = {time} has {article} {scale} of {error:.3e}, not below {bound:e}");
     let passes = error.abs() < bound;
-    Finding { subject: format!("{file}/{name}/T_v={time}"), failure: (!passes).then_some(failure) }
+    ScoredCase { subject: format!("{file}/{name}/T_v={time}"), failure: (!passes).then_some(failure) }
 }
 
 #[cfg(test)]
@@ -348,7 +348,7 @@ mod tests {
     use crate::record::ErrorRow;
     use crate::score::Score;
 
-    fn end_of(findings: &[Finding]) -> Exit {
+    fn end_of(findings: &[ScoredCase]) -> Exit {
         let passes = findings.iter().all(|finding| finding.failure.is_none());
         if passes { Exit::Pass } else { Exit::VerdictFailed }
     }

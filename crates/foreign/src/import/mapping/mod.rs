@@ -480,21 +480,20 @@ impl Mapping {
     }
 
     /// The values that no file can have, and what would be right.
-    #[expect(clippy::too_many_lines, reason = "a list of what is wrong, one after the other")]
     fn faults(&self) -> Vec<Diagnostic> {
+        let mut faults = Faults::default();
+        self.judge_columns(&mut faults);
+        self.judge_numbers(&mut faults);
+        self.judge_times(&mut faults);
+        self.judge_water(&mut faults);
+        faults.0
+    }
+
+    /// What the columns are of, and whether they fit together.
+    fn judge_columns(&self, faults: &mut Faults) {
         let columns = &self.columns;
-        let mut faults = Vec::new();
-        let mut refuse = |is_wrong: bool, message: &str, help: &str| {
-            if is_wrong {
-                faults.push(Diagnostic {
-                    message: message.to_owned(),
-                    span: None,
-                    help: Some(help.to_owned()),
-                });
-            }
-        };
         let quantities = [&columns.p, &columns.u_y, &columns.u_x, &columns.effective_stress];
-        refuse(
+        faults.refuse(
             quantities.iter().all(|name| name.is_none())
                 && self.displacement.is_none()
                 && self.settlement.is_none(),
@@ -504,12 +503,12 @@ impl Mapping {
         let is_wide = columns.wide().next().is_some();
         let is_narrow =
             |column: Column| columns.of_quantity(column).is_some_and(|name| name.single().is_some());
-        refuse(
+        faults.refuse(
             is_wide && Column::ALL.into_iter().any(is_narrow),
             "some quantities have one column per height, and another one has a single column",
             "give its height too, like u_y = { \"top\" = 1.0 }",
         );
-        refuse(
+        faults.refuse(
             is_wide && columns.x.is_some(),
             "columns with their heights have no place along a layer",
             "take `x` out of [columns], or write one row per place",
@@ -519,76 +518,101 @@ impl Mapping {
             ("y", true, "u_y", columns.u_y.is_some()),
             ("x", columns.x.is_some(), "u_x", columns.u_x.is_some()),
         ] {
-            refuse(
+            faults.refuse(
                 is_current && given && !has_component,
                 &format!("current places need the displacement to find the initial `{place}`"),
                 &format!("name `{component}` in [columns], or give initial places"),
             );
         }
-        refuse(
+    }
+
+    /// Numbers, and the marks of a table.
+    fn judge_numbers(&self, faults: &mut Faults) {
+        faults.refuse(
             ![self.origin.x, self.origin.y, self.origin.p].iter().all(|number| number.is_finite()),
             "an origin is invalid: expected a finite number",
             "write it as in the file",
         );
-        refuse(
+        faults.refuse(
             self.whole_volume.is_some_and(|volume| !(volume.is_finite() && volume > 0.0)),
             "`whole_volume` is not positive",
             "give the sum of the volumes of all samples",
         );
-        refuse(
+        faults.refuse(
             ![self.csv.delimiter, self.csv.comment].iter().flatten().all(char::is_ascii),
             "the delimiter or the comment mark is not an ASCII character",
             "use \",\" or \";\"",
         );
-        refuse(
+        faults.refuse(
             self.csv.decimal.is_some_and(|sign| sign != '.' && sign != ','),
             "the `decimal` of [csv] is neither a point nor a comma",
             "write decimal = \".\" or decimal = \",\"",
         );
-        refuse(
+        faults.refuse(
             self.csv.decimal == Some(',') && self.csv.delimiter == Some(','),
             "a comma cannot both separate columns and begin a fraction",
             "declare another `delimiter`",
         );
-        refuse(
+    }
+
+    /// Times, and names of files.
+    fn judge_times(&self, faults: &mut Faults) {
+        faults.refuse(
             self.time.step.is_some_and(|step| !(step.is_finite() && step > 0.0)),
             "the `step` of [time] is not positive",
             "give the seconds from one numbered step to the next",
         );
-        refuse(
+        faults.refuse(
             self.time.list.iter().chain(self.time.files.values()).any(|time| !time.is_finite()),
             "a time in [time] is invalid: expected a finite number",
             "give times in the unit of [units]",
         );
-        refuse(
+        faults.refuse(
             self.time.case
                 && !(self.time.list.is_empty() && self.time.files.is_empty() && self.time.step.is_none()),
             "the files are at the times of the case, and [time] gives others",
             "leave one of them",
         );
-        refuse(
+        faults.refuse(
             self.time.pattern.as_ref().is_some_and(|pattern| pattern.matches("{step}").count() != 1),
             "the `pattern` of [time] does not have `{step}` once",
             "write it like \"column_0_{step}.vtk\", with `*` for what differs",
         );
         let stars = |pattern: &String| pattern.matches('*').count();
-        refuse(
+        faults.refuse(
             self.join.iter().any(|pattern| stars(pattern) == 0 || stars(pattern) != stars(&self.join[0])),
             "the patterns of `join` do not have the same number of `*`, at least one",
             "write them like \"*_scalars_*.vtk\" and \"*_vectors_*.vtk\"",
         );
-        refuse(
+    }
+
+    /// Water at rest, and what makes a stress effective.
+    fn judge_water(&self, faults: &mut Faults) {
+        faults.refuse(
             self.hydrostatic.is_some_and(|water| !(water.unit_weight.is_finite() && water.unit_weight > 0.0)),
             "the `unit_weight` of [hydrostatic] is not positive",
             "give it in Pa per m, like 9810.0",
         );
-        refuse(
+        faults.refuse(
             self.stress.is == StressKind::Total
-                && (columns.p.is_none() || columns.effective_stress.is_none()),
+                && (self.columns.p.is_none() || self.columns.effective_stress.is_none()),
             "a total stress needs the pore pressure to become effective",
             "name both `p` and `effective_stress` in [columns]",
         );
-        faults
+    }
+}
+
+/// What is wrong with a mapping.
+#[derive(Default)]
+struct Faults(Vec<Diagnostic>);
+
+impl Faults {
+    /// Adds what is wrong, with what would be right.
+    fn refuse(&mut self, is_wrong: bool, message: &str, help: &str) {
+        if is_wrong {
+            let (message, help) = (message.to_owned(), Some(help.to_owned()));
+            self.0.push(Diagnostic { message, span: None, help });
+        }
     }
 }
 
