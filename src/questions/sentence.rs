@@ -116,7 +116,7 @@ fn layers(all: &[Layer]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::questions::list::QUESTIONS;
+    use crate::questions::QUESTIONS;
     use regex_lite::Regex;
 
     #[test]

@@ -1,8 +1,8 @@
 //! Every number of an answer in words is a fact: with another number in each fact every number of its sentences is another, and a
 //! fact that moves alone moves a sentence, or it says nothing.
 
+use crate::questions::QUESTIONS;
 use crate::questions::finding::Finding;
-use crate::questions::list::QUESTIONS;
 use crate::tests::whole_pages::every_finding;
 use regex_lite::Regex;
 use serde_json::Value;

@@ -233,12 +233,7 @@ fn a_planted_arrow_or_circle_is_named() {
             "use crate::cli::commands::run::Engine;",
             "cli/commands/plan is a command and uses another, cli/commands/run",
         ),
-        (
-            HARNESS,
-            "questions/finding",
-            "use crate::questions::list::answers;",
-            "questions/finding is in a circle",
-        ),
+        (HARNESS, "questions/finding", "use crate::questions::answers;", "questions/finding is in a circle"),
         (HARNESS, "race/finish", "use crate::race::situation::Entry;", "race/finish is in a circle"),
     ] {
         let mut planted = sources(&order);

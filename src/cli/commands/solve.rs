@@ -13,8 +13,8 @@ use crate::cli::study_files::tell_warnings;
 use crate::judge::study_results::StudyResults;
 use crate::measure::record::record_of;
 use crate::measure::soundness;
+use crate::questions;
 use crate::questions::finding::Place;
-use crate::questions::list;
 use crate::record::field_files::write_fields;
 use crate::record::provenance::Provenance;
 use crate::record::{Balance, ERROR_COLUMNS, ErrorRow, Groups, Record, ReferenceUse, StartChecks, Status};
@@ -147,7 +147,7 @@ fn print_meshes(study: &Study, records: &[Record], format: SolveFormat) -> anyho
         SolveFormat::Json => print_data(&json_of(&records.iter().map(SolveJson::of).collect::<Vec<_>>())?),
         SolveFormat::Table => {
             let results = StudyResults::new(study, records, Tier::Full);
-            let findings = list::answers(&[results], Place::Terminal)?;
+            let findings = questions::answers(&[results], Place::Terminal)?;
             let terminal = Terminal { width: terminal_width(), is_whole: false };
             print_data(&text_of_answers(&findings, terminal)?)
         }

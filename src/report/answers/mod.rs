@@ -9,9 +9,9 @@ pub use race::matrix_page;
 
 use crate::history::comparison::StudyComparison;
 use crate::judge::study_results::StudyResults;
+use crate::questions::answers;
 use crate::questions::expected::EXPECTED;
 use crate::questions::finding::{Finding, Place};
-use crate::questions::list::answers;
 use crate::questions::sentence;
 use crate::race::RaceFindings;
 use crate::record::provenance::{Origins, Provenance};
