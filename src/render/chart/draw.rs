@@ -8,7 +8,7 @@ use crate::render::chart::multiples::{SIDE_BY_SIDE, side_by_side};
 use crate::render::chart::rows;
 use crate::render::chart::slots::TWIN;
 use crate::render::chart::svg::{
-    Area, Drawn, Font, Px, document, group, layer, line, scripted, spot, stroke, units, write,
+    Area, Drawn, Font, NARROW, Px, document, group, layer, line, scripted, spot, stroke, units, write,
 };
 use crate::render::chart::words::{Frame, Space, names, rules, triangles};
 use crate::render::chart::{Chart, ChartAxis, Naming, Series, Style};
@@ -26,8 +26,7 @@ const SUBTITLE: Font = Font { size: 12.0, colour: QUIET.light, is_bold: false };
 const LABEL: Font = Font { size: 13.0, colour: TEXT.light, is_bold: false };
 const TICK: Font = Font { size: TICK_FONT, colour: TEXT.light, is_bold: false };
 const NOTE: Font = Font { size: 11.0, colour: QUIET.light, is_bold: false };
-/// Width of a figure on the screen of a phone, and the most height of its plot, px.
-pub(super) const NARROW: f64 = 368.0;
+/// The most height of a plot on the screen of a phone, px.
 const NARROW_HEIGHT: f64 = 280.0;
 /// The widest map that a phone shows smaller, px.
 const WIDEST_MAP: f64 = 600.0;

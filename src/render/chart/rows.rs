@@ -1,9 +1,8 @@
 //! Dot plots with words: a row a problem, markers on a logarithmic scale, beside them why a series has none, and columns of
 //! words at the right. On a narrow screen the words stand below the markers.
 
-use crate::render::chart::draw::NARROW;
 use crate::render::chart::looks::{FONT, Look, draw_marker, looks};
-use crate::render::chart::svg::{Area, Drawn, Font, Px, group, layer, line, stroke, write};
+use crate::render::chart::svg::{Area, Drawn, Font, NARROW, Px, group, layer, line, stroke, write};
 use crate::render::chart::{Chart, Series};
 use crate::render::palette::{FRAME, GRID, QUIET, SCREEN};
 use crate::render::script::width;

@@ -10,6 +10,9 @@ use plotters::prelude::{Color, IntoFont, RGBColor, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, ShapeStyle, TextStyle};
 
+/// Width of a figure on the screen of a phone, px.
+pub(super) const NARROW: f64 = 368.0;
+
 /// A place on the figure in pixels, from the upper left corner.
 pub(super) type Px = (f64, f64);
 pub(super) type Area<'s> = DrawingArea<SVGBackend<'s>, Shift>;
