@@ -168,11 +168,18 @@ impl Frame {
         }
         let is_new = |array: &Array| self.array(&array.name, Some(array.on)).is_none();
         let new: Vec<Array> = other.arrays.into_iter().filter(is_new).collect();
+        // What is said of an array that is left aside is not said of the one that stays.
+        let is_of_new = |name: &String| new.iter().any(|array| array.name == *name);
+        let (units, fills) = (other.units.into_iter(), other.fills.into_iter());
+        for (name, unit) in units.filter(|(name, _)| is_of_new(name)) {
+            self.units.entry(name).or_insert(unit);
+        }
+        for (name, fill) in fills.filter(|(name, _)| is_of_new(name)) {
+            self.fills.entry(name).or_insert(fill);
+        }
         self.arrays.extend(new);
         self.cells = self.cells.take().or(other.cells);
         self.time = self.time.or(other.time);
-        self.units.extend(other.units);
-        self.fills.extend(other.fills);
         self.notes.extend(other.notes);
         self.doubts.extend(other.doubts);
         Ok(())
@@ -270,6 +277,10 @@ impl Frame {
             (_, None) => {}
         }
         self.time = self.time.or(part.time);
+        let other = |(name, unit): &(&String, &String)| self.units.get(*name).is_some_and(|own| own != *unit);
+        if let Some((name, unit)) = part.units.iter().find(other) {
+            return Err(format!("its parts have `{name}` in {} and in {unit}", self.units[name]));
+        }
         self.units.extend(part.units);
         self.fills.extend(part.fills);
         self.notes.extend(part.notes);
@@ -320,6 +331,18 @@ mod tests {
         assert_eq!(whole.arrays[0].values, [0.0, 0.0, 1.0, 1.0]);
         let bare = Frame { arrays: Vec::new(), ..part(2.0) };
         assert!(whole.append(bare).is_err());
+        let stated = |unit: &str| {
+            let units = [("p".to_owned(), unit.to_owned())].into_iter().collect();
+            Frame { units, ..part(3.0) }
+        };
+        let mut whole = part(0.0);
+        // Said by any of them, and by none otherwise.
+        for unit in ["kPa", "kPa"] {
+            whole.append(stated(unit)).expect("alike");
+            whole.append(part(4.0)).expect("alike");
+        }
+        let refused = whole.append(stated("Pa"));
+        assert_eq!(refused, Err("its parts have `p` in kPa and in Pa".to_owned()));
     }
 
     #[test]
@@ -342,6 +365,18 @@ mod tests {
         own.join(frame(other.to_vec())).expect("the same points");
         let values: Vec<f64> = own.arrays.iter().map(|array| array.values[0]).collect();
         assert_eq!(values, [1.0, 3.0, 4.0], "an array that is there stays as it is");
+        // A unit that is said of an array which is left aside is not that of the one that stays.
+        let units = [("p", "kPa"), ("u", "mm")].map(|(name, unit)| (name.to_owned(), unit.to_owned()));
+        let mut own = frame(vec![array("p", Association::Points, 1.0)]);
+        let other = frame(vec![array("p", Association::Points, 2.0), array("u", Association::Points, 4.0)]);
+        own.join(Frame {
+            units: units.into_iter().collect(),
+            fills: [("p".to_owned(), 1.0)].into(),
+            ..other
+        })
+        .expect("the same points");
+        let kept: Vec<(&str, &str)> = own.units.iter().map(|(name, unit)| (&**name, &**unit)).collect();
+        assert_eq!((&kept[..], own.fills.len()), (&[("u", "mm")][..], 0));
         let elsewhere = Frame { coordinates: vec![[1.0; 3]], ..Frame::default() };
         assert!(own.join(elsewhere).is_err());
     }
