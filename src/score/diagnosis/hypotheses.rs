@@ -11,8 +11,16 @@ use oedometer_exact::{Reference, ReferenceKind};
 use oedometer_soil::elementary::powi;
 
 /// Units of stress, length and time, in SI.
-const STRESSES: [(&str, f64); 6] =
-    [("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9), ("bar", 1e5), ("psi", 6_894.757)];
+const STRESSES: [(&str, f64); 8] = [
+    ("Pa", 1.0),
+    ("kPa", 1e3),
+    ("MPa", 1e6),
+    ("GPa", 1e9),
+    ("bar", 1e5),
+    ("mbar", 1e2),
+    ("atm", 101_325.0),
+    ("psi", 6_894.757),
+];
 const LENGTHS: [(&str, f64); 7] =
     [("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("µm", 1e-6), ("km", 1e3), ("in", 0.0254), ("ft", 0.3048)];
 const TIMES: [(&str, f64); 9] = [
@@ -73,9 +81,9 @@ pub fn scales(field: Field, given: &Given<'_>) -> Vec<Scale> {
     }
     if field == Field::Pressure {
         let weight = parameters.soil.unit_weight_of_water();
-        for (unit, metres) in [("m", 1.0), ("cm", 0.01)] {
+        for (unit, metres) in [("m", 1.0), ("cm", 0.01), ("mm", 1e-3)] {
             let asked = format!("is it a head in {unit}, p/γ_w, where {name} is declared?");
-            add(own / metres / weight, asked, if unit == "m" { "head" } else { "head in cm" });
+            add(own / metres / weight, asked, &format!("head in {unit}"));
         }
     }
     if field.is_stress() {

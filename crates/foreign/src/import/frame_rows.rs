@@ -589,7 +589,8 @@ impl<'a> FrameRows<'a> {
                 let number = self.number(source, row);
                 match self.fill_of(source).filter(|_| number.is_nan()) {
                     Some(fill) => Err(refused(format!(
-                        "`{key}` has no value: the file has {fill} there, its `_FillValue`"
+                        "`{key}` has no value: the file has {fill} there, which it says is none (`_FillValue` or \
+                         `missing_value`)"
                     ))),
                     None if number.is_finite() => Ok(number),
                     None => Err(refused(format!("`{key}` is {number}"))),

@@ -53,9 +53,15 @@ fn increments(states: &mut [SampledState]) {
 }
 
 /// The question, the column, the largest noise that leaves enough of it, and the edit.
-const ROWS: [(&str, &str, f64, Edit); 21] = [
+const ROWS: [(&str, &str, f64, Edit); 23] = [
     ("is it in bar where Pa", "p", 1e-2, |states| {
         each(states, |state| super::scale(&mut state.pressure, 1e-5));
+    }),
+    ("is it in atm where Pa", "p", 1e-3, |states| {
+        each(states, |state| super::scale(&mut state.pressure, 1.0 / 101_325.0));
+    }),
+    ("is it a head in mm", "p", 1e-2, |states| {
+        each(states, |state| super::scale(&mut state.pressure, 1.0 / 9.81));
     }),
     ("is it in in where m", "u_y", 1e-2, |states| {
         each(states, |one| super::scale(&mut one.displacement, 1.0 / 0.0254));
