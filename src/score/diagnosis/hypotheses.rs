@@ -11,13 +11,12 @@ use oedometer_exact::{Reference, ReferenceKind};
 use oedometer_soil::elementary::powi;
 
 /// Units of stress, length and time, in SI.
-const STRESSES: [(&str, f64); 8] = [
+const STRESSES: [(&str, f64); 7] = [
     ("Pa", 1.0),
     ("kPa", 1e3),
     ("MPa", 1e6),
     ("GPa", 1e9),
     ("bar", 1e5),
-    ("mbar", 1e2),
     ("atm", 101_325.0),
     ("psi", 6_894.757),
 ];
