@@ -99,7 +99,8 @@ def leader(race, readout):
         for method, cost in reached.items():
             ratios[method].append(cost / min(reached.values()))
     method = min((one for one in ratios if not one.startswith("TL-")), key=lambda one: (-len(ratios[one]), max(ratios[one])))
-    return {"readout": readout, "method": method, "reached": len(ratios[method]), "of": len(problems),
+    as_often = sum(len(of_one) == len(ratios[method]) for one, of_one in ratios.items() if not one.startswith("TL-"))
+    return {"readout": readout, "method": method, "as_often": as_often, "reached": len(ratios[method]), "of": len(problems),
             "cheapest": sum(one <= 1 for one in ratios[method]), "dearest": max(ratios[method])}
 
 

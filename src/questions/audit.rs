@@ -8,6 +8,7 @@ use crate::questions::finding::{Finding, Place, Question, best};
 use crate::questions::words;
 use crate::record::{Record, Status};
 use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
+use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::table::{Cell, Mood, Table, columns};
 use crate::study::expectation::Axis;
@@ -143,6 +144,11 @@ impl Pairing {
         self.largest.is_some_and(|(_, error)| error.abs() < AGREES)
     }
 
+    /// Whether the last mesh halves the error of the pressure at least.
+    fn falls(&self) -> bool {
+        matches!(self.pressure.as_slice(), [.., (_, coarse), (_, fine)] if coarse.abs() > 2.0 * fine.abs())
+    }
+
     fn name(&self) -> String {
         let mark = if self.is_printed() { " (as printed)" } else { "" };
         format!("{}, {}{mark}", self.law, self.continuity)
@@ -168,7 +174,12 @@ fn table(audit: &Audit) -> Table {
 
 fn over_time(audit: &Audit) -> Figure {
     let mut chart = Chart::new(
-        "Settlement against Xie & Leo, over time",
+        format!(
+            "{} of {} pairings settle within {} of Xie & Leo",
+            audit.pairings.iter().filter(|one| one.agrees()).count(),
+            audit.pairings.len(),
+            number::rounded_percent(AGREES)
+        ),
         ChartAxis::log10("time factor T_v (–)"),
         ChartAxis::linear("settlement over the exact one, minus one (–)"),
     );
@@ -183,7 +194,11 @@ fn over_time(audit: &Audit) -> Figure {
 fn over_mesh(audit: &Audit) -> Figure {
     let points = || audit.pairings.iter().flat_map(|pairing| &pairing.pressure);
     let mut chart = Chart::new(
-        "Pressure against Xie & Leo, over the mesh",
+        format!(
+            "The pressure of {} of {} pairings still falls on the last mesh",
+            audit.pairings.iter().filter(|one| one.falls()).count(),
+            audit.pairings.len()
+        ),
         ChartAxis::log10("cell size h (m)").with_ticks(words::ticks(points().map(|(size, _)| *size))),
         ChartAxis::log10("relative L_2 error of the pressure at the points (–)"),
     );

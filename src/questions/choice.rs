@@ -2,7 +2,7 @@
 //! one.
 
 use crate::case::contender::PAPERS;
-use crate::case::grouping::distinct;
+use crate::case::grouping::{distinct, grouped};
 use crate::judge::study_results::StudyResults;
 use crate::questions::finding::{Finding, Place, Question};
 use crate::race::RaceFindings;
@@ -133,6 +133,10 @@ pub struct Leader {
     places: String,
     /// The method; of several that reach it as often the one that costs the least times the cheapest at worst.
     pub method: String,
+    /// It and the others that reach it as often, in words.
+    who: String,
+    /// How many do.
+    as_often: usize,
     /// Problems in which it reaches 1 %.
     pub reached: usize,
     /// Problems.
@@ -176,12 +180,13 @@ impl FamilyAnswer {
 #[expect(clippy::unnecessary_wraps, reason = "every question may refuse a case")]
 fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
     let race = RaceFindings::from_studies(studies.iter().map(|one| (one.study, one.records)));
-    Ok(race.filter(|race| !race.situations.is_empty()).map(|race| answer(&race)))
+    Ok(race.as_ref().and_then(answer))
 }
 
-/// The answer of a race.
-pub fn answer(race: &RaceFindings) -> Finding {
-    CHOICE.answer(race.situations.iter().map(|one| one.study.as_str()), &facts(race))
+/// The answer of a race; none where nothing is judged by its errors.
+pub fn answer(race: &RaceFindings) -> Option<Finding> {
+    let studies = race.situations.iter().map(|one| one.study.as_str());
+    (!race.situations.is_empty()).then(|| CHOICE.answer(studies, &facts(race)))
 }
 
 /// What the sentences say.
@@ -258,6 +263,8 @@ fn leader(race: &RaceFindings, read_out: ReadOut) -> Option<Leader> {
             read_out,
             places: places_of(read_out).to_owned(),
             method: method.to_owned(),
+            who: method.to_owned(),
+            as_often: 1,
             reached: ratios.len(),
             of: race.situations.len(),
             cheapest: ratios.iter().filter(|ratio| **ratio <= 1.0).count(),
@@ -267,7 +274,16 @@ fn leader(race: &RaceFindings, read_out: ReadOut) -> Option<Leader> {
     let everywhere = methods(race).into_iter().filter(|method| Group::Moving.takes(method));
     let mut all: Vec<Leader> = everywhere.map(of_method).collect();
     all.sort_by(|a, b| (Reverse(a.reached)).cmp(&Reverse(b.reached)).then(a.dearest.total_cmp(&b.dearest)));
-    all.into_iter().next().filter(|one| one.reached > 0)
+    let first = all.first().filter(|one| one.reached > 0)?.clone();
+    let equals: Vec<&str> =
+        all.iter().take_while(|one| one.reached == first.reached).map(|one| one.method.as_str()).collect();
+    let who = match equals[..] {
+        [only] => only.to_owned(),
+        [one, other] => format!("{one} and {other}"),
+        [one, ref others @ ..] => format!("{one} and {} others", others.len()),
+        [] => return None,
+    };
+    Some(Leader { who, as_often: equals.len(), ..first })
 }
 
 fn family_answers(race: &RaceFindings, group: Group, read_out: ReadOut) -> Vec<FamilyAnswer> {
@@ -343,6 +359,17 @@ fn plotted(race: &RaceFindings, read_out: ReadOut) -> Vec<(String, &'static str)
     most.chain(SHOWN.iter().map(|(name, word)| ((*name).to_owned(), *word))).collect()
 }
 
+/// Who is the cheapest of all in most problems, and in how many.
+fn cheapest_of_most(race: &RaceFindings, terms: &Terms) -> String {
+    let first =
+        race.situations.iter().filter_map(|one| Some(cheapest(one, terms, |_| true)?.0.contender.as_str()));
+    let mut methods = grouped(first, |method| *method);
+    methods.sort_by_key(|(_, problems)| Reverse(problems.len()));
+    methods.first().map_or("No method arrives".to_owned(), |(method, problems)| {
+        format!("{method} is the cheapest most often, in {} of {}", problems.len(), race.situations.len())
+    })
+}
+
 /// A row per problem: cost to 1 % over the cheapest of all methods, why a method does not get there, and the cheapest with its
 /// cost, cells and step.
 pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
@@ -359,7 +386,7 @@ pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
         (LARGEST_TAU, "× 100"),
     ];
     let mut chart = Chart::new(
-        format!("No method is the cheapest everywhere: cost to 1 %, read {}", places_of(read_out)),
+        format!("{}: work to 1 %, read {}", cheapest_of_most(race, &terms), places_of(read_out)),
         ChartAxis::log10("Work over the cheapest")
             .between(1.0, LARGEST_TAU)
             .with_labelled_ticks(ticks.map(|(tau, words)| (tau, words.to_owned()))),
@@ -382,7 +409,7 @@ pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
         rows: race.situations.iter().map(|one| plotted_row(one, &names, &terms)).collect(),
     });
     let caption = "At the right: dearer. *Budget*: the error still falls when the meshes end; *plateau*: it stays; *inaccurate*: it is \
-                   large and stays, or ends the run. Work: counted operations times their calibrated times.";
+                   large and stays, or ends the run. Work, here and everywhere: counted operations times their calibrated times.";
     Figure::new(format!("race-problems-{}", read_out.name()), chart, caption)
 }
 
@@ -475,7 +502,7 @@ pub fn practice(findings: &RaceFindings, read_out: ReadOut) -> Table {
                 Cell::Code(entry.contender.clone()),
                 Cell::Count(arrival.cells as u64),
                 arrival.step.into(),
-                Cell::Seconds(cost),
+                Cell::Number(1e3 * cost),
             ]),
             _ => row.extend(std::iter::repeat_n(Cell::missing("no method reaches 1 %"), 4)),
         }
@@ -489,7 +516,7 @@ pub fn practice(findings: &RaceFindings, read_out: ReadOut) -> Table {
         findings.situations.iter().filter(move |one| group.has(one)).map(move |one| row(group, one))
     });
     let heads = format!(
-        "group | problem | cheapest | > cells | step | > work to 1 % | > {} | > {} | > {}",
+        "group | problem | cheapest | > cells | step | > work [ms] | > {} | > {} | > {}",
         BESIDE[0], BESIDE[1], BESIDE[2]
     );
     Table::of(format!("What 1 % takes, read {}", places_of(read_out)), columns(&heads), rows)

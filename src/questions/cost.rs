@@ -1,12 +1,13 @@
-//! What does accuracy cost in time? Timed runs by error and wall time, and the cheapest within each tolerance.
+//! What does accuracy cost? Runs by error and counted work, and the cheapest within each tolerance.
 
 use crate::case::IntegratorKind;
 use crate::case::grouping::distinct;
 use crate::judge::study_results::StudyResults;
 use crate::questions::finding::{Finding, Place, Question, best};
-use crate::questions::timed_runs::WorkPrecision;
-use crate::questions::words;
+use crate::questions::words::{self, COUNTED_WORK};
+use crate::questions::work_precision::WorkPrecision;
 use crate::render::chart::{Chart, ChartAxis, Naming, PointName, Series, Size, slots};
+use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::table::{Cell, Table, columns};
 use oedometer_exact::ExactError;
@@ -27,15 +28,23 @@ struct Facts {
     tolerance: f64,
     /// Label of the cheapest run within it.
     run: Option<String>,
-    /// Median of its wall times, s.
+    /// Its counted work, s.
     seconds: Option<f64>,
     /// Whether a finer mesh stays within it too.
     is_confirmed: bool,
-    /// How far the same run, timed twice, differs in this session.
-    noise: Option<f64>,
+    /// The other methods within it with their least work, the cheapest first.
+    others: Vec<MethodWork>,
 }
 
-/// The study with most timed runs, and these.
+/// The least work of a method.
+#[derive(serde::Serialize, schemars::JsonSchema)]
+struct MethodWork {
+    method: String,
+    /// Counted work, s.
+    seconds: f64,
+}
+
+/// The study with most runs of those that ask for their times, and these.
 ///
 /// # Errors
 /// None of its own.
@@ -55,31 +64,50 @@ fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
     Ok(timed_study(studies)?.and_then(|(one, precision)| answer(&one.study.name, &precision)))
 }
 
-const CAPTION: &str = "Colour: method; marker: integrator. Each line joins the runs that no other run of the same two beats in both \
-                       time and error. Wall time: median over repeats.";
-
 fn answer(study: &str, precision: &WorkPrecision<'_>) -> Option<Finding> {
     let widest = precision.cheapest.first()?;
+    let others = widest.methods.iter().skip(1);
     let facts = Facts {
         tolerance: widest.tolerance,
         run: widest.run.as_ref().map(|run| run.record.case.label()),
-        seconds: widest.run.as_ref().map(|run| run.wall.median),
+        seconds: widest.run.as_ref().map(|run| run.work),
         is_confirmed: widest.is_confirmed,
-        noise: precision.noise_floor,
+        others: others
+            .map(|(method, seconds)| MethodWork { method: method.to_string(), seconds: *seconds })
+            .collect(),
     };
-    let figure = Figure::new("cost", chart(precision), CAPTION);
+    let caption = "Colour: method; marker: integrator. Each line joins the runs that no other run of the same two beats in both \
+                   work and error.";
+    let figure = Figure::new("cost", chart(precision), caption);
     let parts = COST.answer([study], &facts).with(Block::Figures(vec![figure]));
     Some(parts.with(Block::Table(table(precision))))
 }
 
-/// Factor on the longest time up to which the axis goes.
+/// Factor on the most work up to which the axis goes.
 const ROOM_FOR_NAMES: f64 = 5.0;
+
+/// What the figure shows: who needs the least work for each tolerance.
+fn title_of(precision: &WorkPrecision<'_>) -> String {
+    let runs = precision.cheapest.iter().filter_map(|one| Some((one.tolerance, one.run.as_ref()?)));
+    let least = runs.map(|(tolerance, run)| (run.record.case.method.to_string(), number::percent(tolerance)));
+    let groups = crate::case::grouping::grouped(least, |(method, _)| method.clone()).into_iter();
+    let told = groups.map(|(method, within)| {
+        let within: Vec<String> = within.into_iter().map(|(_, tolerance)| tolerance).collect();
+        format!("{method} to {}", within.join(", "))
+    });
+    let told: Vec<String> = told.collect();
+    if told.is_empty() {
+        "No run is within 1 %".to_owned()
+    } else {
+        format!("Least work: {}", told.join("; "))
+    }
+}
 
 /// A line per method and integrator over its best runs; names stand at the ends of the lines.
 fn chart(precision: &WorkPrecision<'_>) -> Chart {
     let mut chart = Chart::new(
-        "Error against wall time",
-        ChartAxis::log10("wall time (s)"),
+        title_of(precision),
+        ChartAxis::log10("counted work (s)"),
         ChartAxis::log10("error of the pore pressure, worst of the outputs (–)"),
     );
     chart.size = Size { width: 1000.0, plot_height: 460.0, equal_units: false };
@@ -93,13 +121,13 @@ fn chart(precision: &WorkPrecision<'_>) -> Chart {
         let place = methods.iter().position(|other| *other == method).unwrap_or_default();
         let marker = IntegratorKind::ALL.iter().position(|kind| *kind == front.integrator);
         let name = format!("{method}, {}", front.integrator.name());
-        let points = front.runs.iter().map(|run| (run.wall.median, run.error)).collect();
+        let points = front.runs.iter().map(|run| (run.work, run.error)).collect();
         let series = Series::new(name, points);
         add_named(&mut chart, series.slot(slots[place]).marker(marker.unwrap_or_default()));
     }
     // Room for the names right of the last points.
-    let times = || chart.series.iter().flat_map(|series| &series.points).map(|(seconds, _)| *seconds);
-    let (least, most) = (times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));
+    let works = || chart.series.iter().flat_map(|series| &series.points).map(|(work, _)| *work);
+    let (least, most) = (works().fold(f64::INFINITY, f64::min), works().fold(0.0, f64::max));
     if least < most {
         chart.x = chart.x.between(0.8 * least, ROOM_FOR_NAMES * most);
     }
@@ -118,61 +146,53 @@ fn table(precision: &WorkPrecision<'_>) -> Table {
         let mut row = vec![Cell::Percent(cheapest.tolerance)];
         row.extend(cheapest.run.iter().flat_map(|run| {
             let (case, counters) = (&run.record.case, &run.record.counters);
-            let counted = |work: u64| words::counted(Some(work).filter(|_| case.counts_work()));
             [
                 Cell::Code(case.label()),
                 Cell::Error(run.error),
-                Cell::Number(1e3 * run.wall.median),
-                Cell::Number(1e3 * run.wall.deviation),
-                counted(counters.steps),
-                counted(counters.point_updates),
+                Cell::Number(1e3 * run.work),
+                words::counted(Some(counters.steps)),
+                words::counted(Some(counters.point_updates)),
                 if cheapest.is_confirmed { "yes" } else { "no" }.into(),
             ]
         }));
-        row.resize(8, Cell::missing("no timed run reaches the tolerance"));
+        row.resize(7, Cell::missing("no run reaches the tolerance"));
         row
     });
-    let header = "> tolerance | run | > error | > wall, median [ms] | > ± deviation [ms] | > steps | > point updates | finer mesh within it";
-    Table::of("The cheapest run within a tolerance", columns(header), rows).file("cost").note(
-        "error of the pore pressure at the points, relative L2, the worst of the outputs; wall times of runs that had the \
-         machine to themselves, in rounds over all runs",
-    )
+    let header =
+        "> tolerance | run | > error | > work [ms] | > steps | > point updates | finer mesh within it";
+    Table::of("The cheapest run within a tolerance", columns(header), rows).file("cost").note(format!(
+        "error of the pore pressure at the points, relative L2, the worst of the outputs; work: {COUNTED_WORK}"
+    ))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::measure::statistics::WallSpread;
-    use crate::questions::timed_runs::{Cheapest, TimedRun};
+    use crate::questions::work_precision::{Cheapest, CostedRun};
 
     #[test]
-    fn every_number_of_the_wall_times_stands_under_its_name() {
+    fn every_number_of_the_work_stands_under_its_name() {
         let records = records_of(
             "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.2]\n[[sweep]]\nmethod = ['GIMP', 'MPM']\n\
              integrator = ['implicit']\ncells = [4]\n",
         );
-        let run = |place: usize, median: f64, error: f64| TimedRun {
-            record: &records[place],
-            error,
-            wall: WallSpread { count: 5, median, deviation: 0.0013, minimum: 0.009, maximum: 0.041 },
-        };
+        let run = |place: usize, work: f64, error: f64| CostedRun { record: &records[place], error, work };
         let (cheapest, other) = (run(0, 0.011, 0.0071), run(1, 0.023, 0.0092));
+        let methods = [&cheapest, &other].map(|run| (run.record.case.method, run.work)).to_vec();
         let precision = WorkPrecision {
             cheapest: vec![
-                Cheapest { tolerance: 1e-2, run: Some(cheapest.clone()), is_confirmed: true },
-                Cheapest { tolerance: 1e-3, run: None, is_confirmed: false },
+                Cheapest { tolerance: 1e-2, run: Some(cheapest.clone()), is_confirmed: true, methods },
+                Cheapest { tolerance: 1e-3, run: None, is_confirmed: false, methods: Vec::new() },
             ],
             runs: vec![cheapest, other],
-            noise_floor: Some(0.07),
         };
         let (label, counters) = (records[0].case.label(), &records[0].counters);
-        let found = answer("s", &precision).expect("timed runs");
+        let found = answer("s", &precision).expect("runs");
         assert_eq!(
             found.sentence().expect("a sentence"),
             format!(
-                "A pressure within 1 % at every output takes 11.0 ms: `{label}`. Timed twice in this session, the same run \
-                 differs by 7 %."
+                "A pressure within 1 % at every output takes 11.0 ms of counted work: `{label}`; `MPM` takes 23.0 ms."
             )
         );
         let table = found.tables()[0];
@@ -181,7 +201,6 @@ mod tests {
             Cell::Code(label),
             Cell::Error(0.0071),
             Cell::Number(11.0),
-            Cell::Number(1.3),
             Cell::Count(counters.steps),
             Cell::Count(counters.point_updates),
             "yes".into(),
@@ -189,6 +208,7 @@ mod tests {
         assert_eq!(table.rows[0], expected);
         assert!(matches!(table.rows[1][1..], [Cell::Missing(_), ..]), "{:?}", table.rows[1]);
         let chart = chart(&precision);
+        assert_eq!(chart.title, "Least work: GIMP to 1.00 %");
         let series =
             |place: usize| (chart.series[place].name.as_str(), chart.series[place].points.as_slice());
         assert_eq!(series(0), ("GIMP, implicit", &[(0.011, 0.0071)][..]));

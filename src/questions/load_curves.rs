@@ -61,12 +61,11 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
         ChartAxis::linear("bearing-capacity factor F/(B c_u) (–)").between(0.0, HIGHEST * LOAD_FACTOR),
     );
     chart.size = Size::PANEL;
-    // The place of a method among all of the study is its colour.
-    for (place, (method, own)) in of_methods.iter().enumerate() {
+    for (method, own) in &of_methods {
         if let Some(record) = own.iter().find(|record| record.case.cells == cells) {
             let points = record.history.iter().filter_map(|row| Some((row.time_factor, row.load_factor?)));
             let series = Series::new(method.as_str(), points.collect());
-            chart.series.push(series.style(Style::Line).slot(place));
+            chart.series.push(series.style(Style::Line));
         }
     }
     let is_kept = |series: &&Series| series.points.iter().all(|(_, load)| *load < KEPT_BELOW * LOAD_FACTOR);

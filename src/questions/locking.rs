@@ -104,11 +104,18 @@ fn loss(row: &SweepRow, ratios: &[f64]) -> Cell {
     }
 }
 
+/// What the figure shows: how many methods keep the pressure at every ratio.
+fn title_of(rows: &[&SweepRow], ratios: &[f64]) -> String {
+    let is_kept = |row: &&&SweepRow| (0..ratios.len()).all(|place| row.errors(place)[1].is_some_and(|error| error < KEPT));
+    let kept = rows.iter().filter(is_kept).count();
+    format!("{kept} of {} methods keep the pressure at the points within {} %", rows.len(), number::number(100.0 * KEPT))
+}
+
 /// The error of the pressure of all methods over a ratio spaced as 1 − 2ν.
 fn figure(rows: &[&SweepRow], ratios: &[f64]) -> Figure {
     let ticks = ratios.iter().map(|ratio| (1.0 - 2.0 * ratio, typed(*ratio)));
     let x = ChartAxis::log10("Poisson's ratio ν (–), spaced as 1 − 2ν").inverted().with_labelled_ticks(ticks);
-    let mut chart = Chart::new("Pressure at the points", x, ChartAxis::log10("relative L_2 error (–)"));
+    let mut chart = Chart::new(title_of(rows, ratios), x, ChartAxis::log10("relative L_2 error (–)"));
     chart.size = Size::PANEL;
     for row in rows {
         let point = |(place, ratio): (usize, &f64)| Some((1.0 - 2.0 * ratio, row.errors(place)[1]?));

@@ -28,10 +28,10 @@ pub mod settlement;
 pub mod stability;
 pub mod stiffness_sweep;
 pub mod time_step;
-pub mod timed_runs;
 pub mod uncertainty;
 pub mod within;
 pub mod words;
+pub mod work_precision;
 
 use crate::judge::study_results::StudyResults;
 use crate::questions::audit::AUDIT;
@@ -57,6 +57,7 @@ use crate::questions::stability::STABILITY;
 use crate::questions::time_step::TIME_STEP;
 use crate::questions::uncertainty::UNCERTAINTY;
 use crate::questions::within::WITHIN;
+use crate::race::RaceFindings;
 use oedometer_exact::ExactError;
 use rayon::prelude::*;
 
@@ -92,10 +93,22 @@ pub static QUESTIONS: &[&Question] = &[
 /// # Errors
 /// When a reference refuses a case: that of the first question, on any number of threads.
 pub fn answers(studies: &[StudyResults<'_>], place: Place) -> Result<Vec<Finding>, ExactError> {
-    let asked: Vec<_> = QUESTIONS
-        .par_iter()
-        .filter(|question| question.stands_at(place))
-        .map(|question| (question.ask)(studies))
-        .collect();
+    answers_with(studies, place, None)
+}
+
+/// The same with a race that is computed already.
+///
+/// # Errors
+/// As above.
+pub fn answers_with(
+    studies: &[StudyResults<'_>],
+    place: Place,
+    race: Option<&RaceFindings>,
+) -> Result<Vec<Finding>, ExactError> {
+    let ask = |question: &&Question| match race {
+        Some(race) if question.id == CHOICE.id => Ok(choice::answer(race)),
+        _ => (question.ask)(studies),
+    };
+    let asked: Vec<_> = QUESTIONS.par_iter().filter(|question| question.stands_at(place)).map(ask).collect();
     asked.into_iter().filter_map(Result::transpose).collect()
 }

@@ -7,7 +7,7 @@ use crate::judge::paths::first_error;
 use crate::judge::study_results::StudyResults;
 use crate::questions::cost::timed_study;
 use crate::questions::finding::{Finding, Place, Question};
-use crate::questions::timed_runs::TimedRun;
+use crate::questions::work_precision::CostedRun;
 use crate::render::page::Block;
 use crate::render::table::{Cell, Table, columns};
 use oedometer_exact::{ExactError, ReferenceKind};
@@ -54,8 +54,6 @@ struct Peer {
     middle: f64,
     #[serde(rename = "error at T_v=1")]
     late: f64,
-    /// The smaller of the processor time of the whole run and the wall time that the program reports for its solution, s.
-    seconds: f64,
     /// Day of the measurement.
     #[serde(rename = "measured on")]
     day: String,
@@ -84,10 +82,10 @@ fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
 }
 
 /// Runs of other programs that a page shows, the most accurate ones.
-const SHOWN_ROWS: usize = 6;
+const SHOWN_ROWS: usize = 4;
 
 /// `None` where no run of the paper's method can be compared.
-fn answer(study: &str, runs: &[TimedRun<'_>]) -> Option<Finding> {
+fn answer(study: &str, runs: &[CostedRun<'_>]) -> Option<Finding> {
     let mut beside: Vec<(&Peer, [Option<f64>; 3])> =
         PROGRAMS.iter().filter_map(|peer| Some((peer, on_cells(runs, peer.cells)?))).collect();
     // The most accurate first: a page shows no more than the first rows.
@@ -106,8 +104,8 @@ fn answer(study: &str, runs: &[TimedRun<'_>]) -> Option<Finding> {
 }
 
 /// The errors of the best implicit run of the paper's method on a mesh, measured like those of the other programs.
-fn on_cells(runs: &[TimedRun<'_>], cells: usize) -> Option<[Option<f64>; 3]> {
-    let fits = |run: &&TimedRun<'_>| {
+fn on_cells(runs: &[CostedRun<'_>], cells: usize) -> Option<[Option<f64>; 3]> {
+    let fits = |run: &&CostedRun<'_>| {
         let case = &run.record.case;
         case.cells == cells && case.method.to_string() == PAPERS && !case.is_explicit()
     };
@@ -125,21 +123,17 @@ fn table(beside: &[(&Peer, [Option<f64>; 3])]) -> Table {
             Cell::Count(peer.cells as u64),
             peer.time_scheme.as_str().into(),
             peer.day.as_str().into(),
-            Cell::Seconds(peer.seconds),
         ];
         row.extend(peer.errors().map(Cell::Error));
         row.extend(papers.map(|error| Cell::of(error, Cell::Error, "not measured")));
         row
     });
     let times = |of: &str| TIME_FACTORS.map(|factor| format!("> {of} at T_v = {factor}")).join(" | ");
-    let header = format!(
-        "program | > cells | time scheme | measured on | > its time | {} | {}",
-        times("its error"),
-        times(PAPERS)
-    );
+    let header =
+        format!("program | > cells | time scheme | measured on | {} | {}", times("its error"), times(PAPERS));
     Table::of("Errors of the pressure on the seed column", columns(&header), rows).file("peers").shown(SHOWN_ROWS).note(
-        "the output of these programs, run by examples/adapters/run.py on another day; their time is the smaller of the \
-         processor time of the whole run and the wall time that they report for the solution",
+        "the output of these programs, run by examples/adapters/run.py; their times are in examples/adapters/results.csv: \
+         clocks of another day, and no counted work",
     )
 }
 
@@ -148,7 +142,6 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::case::SolverName;
-    use crate::measure::statistics::spread;
     use crate::record::Record;
     use oedometer_problem::integrator::IntegratorKind;
     use oedometer_problem::method::Method;
@@ -156,9 +149,12 @@ mod tests {
     const STUDY: &str = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.05, 0.2, 1.0]\n[[sweep]]\n\
         method = ['GC-SRI-patch']\nintegrator = ['implicit']\ncells = [10]\n";
 
-    fn timed<'a>(records: &'a [Record], errors: &[f64]) -> Vec<TimedRun<'a>> {
-        let wall = spread(&[1.0, 1.0]).expect("two samples");
-        records.iter().zip(errors).map(|(record, error)| TimedRun { record, error: *error, wall }).collect()
+    fn costed<'a>(records: &'a [Record], errors: &[f64]) -> Vec<CostedRun<'a>> {
+        records
+            .iter()
+            .zip(errors)
+            .map(|(record, error)| CostedRun { record, error: *error, work: 1.0 })
+            .collect()
     }
 
     #[test]
@@ -180,11 +176,11 @@ mod tests {
         let own = [with(&|_| (), 0.03), with(&|_| (), 0.02), with(&|_| (), 0.04)];
         let records = [others.clone(), own].concat();
         let errors = [1e-5, 1e-6, 1e-7, 0.03, 0.02, 0.04];
-        let runs = timed(&records, &errors);
+        let runs = costed(&records, &errors);
         assert_eq!(on_cells(&runs, 10), Some([Some(0.02); 3]));
         assert_eq!(on_cells(&runs, 20), Some([Some(1e-7); 3]));
         assert_eq!(on_cells(&runs, 40), None);
-        assert_eq!(on_cells(&timed(&others, &errors), 10), None, "none of the others is comparable");
+        assert_eq!(on_cells(&costed(&others, &errors), 10), None, "none of the others is comparable");
         let found = answer("s", &runs).expect("runs to compare");
         let alike = |cells: usize| {
             let is = |peer: &&Peer| peer.time_scheme.starts_with("SDIRK") && peer.cells == cells;
@@ -194,9 +190,9 @@ mod tests {
         let counts = ["compared", "ahead"].map(|key| found.facts[key].as_u64());
         assert_eq!(counts, [alike(10) + alike(20), alike(10)].map(|count| Some(count as u64)));
         let of_ten = found.tables()[0].rows.iter().find(|row| row[1] == Cell::Count(10)).expect("ten cells");
-        assert_eq!(of_ten[8..], [0.02; 3].map(Cell::Error));
+        assert_eq!(of_ten[7..], [0.02; 3].map(Cell::Error));
         assert_eq!(
-            answer("s", &timed(&others[..2], &errors)),
+            answer("s", &costed(&others[..2], &errors)),
             None,
             "nothing is said of what was not compared"
         );
@@ -208,10 +204,10 @@ mod tests {
         let head = text.lines().next().expect("a head");
         let line = "a program,what,20,nodes,steps,0.3,0.5,0.2,1.9,+0.1,4.5,2026-01-02";
         let [peer] = &read(&format!("{head}\n{line}\n")).expect("a table")[..] else { panic!("one peer") };
-        assert_eq!((peer.errors(), peer.cells, peer.seconds), ([0.3, 0.5, 0.2], 20, 4.5));
+        assert_eq!((peer.errors(), peer.cells), ([0.3, 0.5, 0.2], 20));
         assert_eq!([&peer.name, &peer.time_scheme, &peer.day], ["a program", "steps", "2026-01-02"]);
         let is_one = |error: &f64| (0.0..1.0).contains(error);
-        assert!(PROGRAMS.iter().all(|peer| peer.errors().iter().all(is_one) && peer.seconds > 0.0));
+        assert!(PROGRAMS.iter().all(|peer| peer.errors().iter().all(is_one)));
         let broken = read(&text.replacen(",10,", ",many,", 1)).expect_err("no number").to_string();
         assert!(broken.contains("line: 2"), "{broken}");
     }

@@ -8,6 +8,8 @@ use crate::judge::study_results::StudyResults;
 use crate::measure::record_checks::has_burst;
 use crate::measure::statistics::median;
 use crate::questions::finding::{Finding, Place, Question};
+use crate::questions::words::COUNTED_WORK;
+use crate::record::calibration::cost_of;
 use crate::record::{Record, Status};
 use crate::render::page::Block;
 use crate::render::table::{Cell, Table, columns};
@@ -29,13 +31,16 @@ struct Facts {
     pairs: usize,
     /// Least and largest ratio of the errors of the pressure at the points, at every output.
     error_ratios: Option<[f64; 2]>,
-    /// Least and largest of the rows' ratios of the time that a run takes.
-    time_ratios: Option<[f64; 2]>,
+    /// Least and largest of the rows' ratios of the counted work.
+    work_ratios: Option<[f64; 2]>,
     /// Runs that ended before their last output, with one set and with two.
     failed: [usize; 2],
     /// Runs with two sets in which the pressure exceeded what the load can cause.
     bursts: usize,
 }
+
+/// Rows that a page shows.
+const SHOWN_ROWS: usize = 5;
 
 /// Runs that are equal in everything but the point sets.
 struct Pair<'a> {
@@ -51,8 +56,8 @@ struct Row {
     pairs: usize,
     /// Least, median and largest ratio of the errors.
     errors: Option<[f64; 3]>,
-    /// Median ratio of the times.
-    time: Option<f64>,
+    /// Median ratio of the counted work.
+    work: Option<f64>,
 }
 
 fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
@@ -72,7 +77,7 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
         error_ratios: ends(
             rows.iter().filter_map(|row| row.errors).flat_map(|[least, _, most]| [least, most]),
         ),
-        time_ratios: ends(rows.iter().filter_map(|row| row.time)),
+        work_ratios: ends(rows.iter().filter_map(|row| row.work)),
         failed: [failed(|pair| pair.with_one), failed(|pair| pair.with_two)],
         bursts: studies.iter().flat_map(|one| one.records).filter(|record| has_burst(record)).count(),
     };
@@ -101,14 +106,15 @@ impl Row {
     fn new(study: &str, method: String, pairs: &[&Pair<'_>]) -> Self {
         let mut errors: Vec<f64> = pairs.iter().flat_map(|pair| error_ratios(pair)).collect();
         errors.sort_by(f64::total_cmp);
-        let times = pairs.iter().filter_map(|pair| Some(seconds(pair.with_two)? / seconds(pair.with_one)?));
+        let work: Vec<f64> =
+            pairs.iter().map(|pair| cost_of(pair.with_two) / cost_of(pair.with_one)).collect();
         let ends = errors.first().copied().zip(errors.last().copied());
         Self {
             study: study.to_owned(),
             method,
             pairs: pairs.len(),
             errors: ends.zip(median(&errors)).map(|((least, most), middle)| [least, middle, most]),
-            time: median(&times.collect::<Vec<_>>()),
+            work: median(&work),
         }
     }
 }
@@ -122,13 +128,6 @@ fn error_ratios(pair: &Pair<'_>) -> Vec<f64> {
     let times = pair.with_one.case.time_factors.iter();
     let both = times.filter_map(|time| Some((error(pair.with_one, *time)?, error(pair.with_two, *time)?)));
     both.filter(|(one, _)| *one > 0.0).map(|(one, two)| two / one).collect()
-}
-
-/// Median time of a run: processor time where it is known, because other runs do not lengthen it.
-fn seconds(record: &Record) -> Option<f64> {
-    let times: Vec<f64> =
-        record.wall.iter().map(|sample| sample.cpu_seconds.unwrap_or(sample.seconds)).collect();
-    median(&times).filter(|seconds| *seconds > 0.0)
 }
 
 /// The least and the largest of some ratios; `None` without any.
@@ -147,13 +146,14 @@ fn table(rows: &[Row]) -> Table {
             error(0),
             error(1),
             error(2),
-            Cell::of(row.time, Cell::Number, "not timed"),
+            Cell::of(row.work, Cell::Number, "not counted"),
         ]
     });
-    let header = "study | method | > pairs | > error ratio: least | > median | > largest | > time ratio";
+    let header = "study | method | > pairs | > error ratio: least | > median | > largest | > work ratio";
     Table::of("Two sets of points over one", columns(header), cells)
         .file("point-sets")
-        .note("error of the pressure at the points, at every output")
+        .shown(SHOWN_ROWS)
+        .note(format!("error of the pressure at the points, at every output; work: {COUNTED_WORK}"))
 }
 
 #[cfg(test)]
@@ -161,7 +161,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::{failed_at, solved};
     use crate::case::planned::Tier;
-    use crate::record::WallSample;
+    use oedometer_problem::outcome::Counters;
 
     const STUDY: &str = "title = 't'\nscene = 'terzaghi'\n[output]\ntime_factors = [1e-4, 2e-4]\n[[sweep]]\n\
         method = ['GIMP-SRI-patch', 'MPM']\ncells = [4, 8]\nsets = [1, 2]\n";
@@ -172,30 +172,42 @@ mod tests {
         for record in &mut records {
             let is_mpm = record.case.method.to_string() == "MPM";
             let has_two = record.case.column.points.has_two_sets();
-            let (error, seconds) = match (is_mpm, record.case.cells, has_two) {
-                (_, _, false) => (0.2, 2.0),
-                (true, 4, true) => (0.1, 5.0),
-                (true, _, true) => (0.8, 7.0),
-                (false, _, true) => (0.3, 9.0),
+            let error = match (is_mpm, record.case.cells, has_two) {
+                (_, _, false) => 0.2,
+                (true, 4, true) => 0.1,
+                (true, _, true) => 0.8,
+                (false, _, true) => 0.3,
             };
             record.errors.iter_mut().for_each(|row| row.value = error);
-            record.wall = vec![WallSample { seconds, ..WallSample::default() }];
+            // Twice as many points for as many steps.
+            record.counters = Counters { steps: 10, points: if has_two { 16 } else { 8 }, ..record.counters };
             if is_mpm && record.case.cells == 8 {
                 record.status = failed_at(3);
             }
         }
         let found = |records: &[Record]| ask(&[StudyResults::new(&study, records, Tier::Full)]);
+        let work = |method: &str, sets: usize| {
+            let is_it = |one: &&Record| {
+                one.case.method.to_string() == method && one.case.column.points.has_two_sets() == (sets == 2)
+            };
+            cost_of(records.iter().find(is_it).expect("a run"))
+        };
+        let ratios = ["GIMP-SRI-patch", "MPM"].map(|method| work(method, 2) / work(method, 1));
+        let [least, most] = ends(ratios.into_iter()).expect("two").map(|ratio| format!("{ratio:.2}"));
         let answer = found(&records).expect("four pairs");
         assert_eq!(
             answer.sentence().expect("a sentence"),
-            "4 pairs of runs differ in the point sets alone: with two sets the error of the pressure is 0.50 to 4.00 times \
+            format!(
+                "4 pairs of runs differ in the point sets alone: with two sets the error of the pressure is 0.50 to 4.00 times \
              that with one. 1 single-point run and 1 double-point run ended before the last output; in 0 double-point runs \
-             the pressure exceeded what the load can cause. Two sets take 3.00 to 4.50 times as long."
+             the pressure exceeded what the load can cause. Two sets take {least} to {most} times the work."
+            )
         );
+        assert!(ratios.into_iter().all(|ratio| ratio > 1.5), "{ratios:?}");
         let shown: Vec<Vec<String>> =
             answer.tables()[0].rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
-        assert_eq!(shown[0], ["s", "GIMP-SRI-patch", "2", "1.5", "1.5", "1.5", "4.5"]);
-        assert_eq!(shown[1], ["s", "MPM", "2", "0.5", "2.25", "4", "3"]);
+        assert_eq!(shown[0][..6], ["s", "GIMP-SRI-patch", "2", "1.5", "1.5", "1.5"]);
+        assert_eq!(shown[1][..6], ["s", "MPM", "2", "0.5", "2.25", "4"]);
         // A run without its twin is in no pair.
         records.retain(|record| record.case.column.points.has_two_sets() || record.case.cells == 4);
         assert_eq!(found(&records).expect("two pairs").facts["pairs"], 2);

@@ -81,6 +81,24 @@ fn depth_name(reference: &str) -> &'static str {
     }
 }
 
+/// Time factors that have a colour of their own in every figure.
+const COLOURED: [f64; 8] = [0.01, 0.06, 0.1, 0.2, 0.45, 0.85, 1.0, 2.0];
+
+/// The colours of time factors: that of the nearest coloured one by its ratio, or the next that is free.
+fn slots_of_times(times: &[f64]) -> Vec<usize> {
+    let distance = |time: f64, place: usize| {
+        let ratio = time.max(f64::MIN_POSITIVE) / COLOURED[place];
+        ratio.max(1.0 / ratio)
+    };
+    let mut slots: Vec<usize> = Vec::new();
+    for time in times {
+        let free = (0..COLOURED.len()).filter(|place| !slots.contains(place));
+        let nearest = free.min_by(|a, b| distance(*time, *a).total_cmp(&distance(*time, *b)));
+        slots.push(nearest.unwrap_or(slots.len()));
+    }
+    slots
+}
+
 /// The paper's Figs 3a and 4a: `p/q` against depth, at every output or a few from the first to the last.
 ///
 /// # Errors
@@ -96,12 +114,14 @@ pub fn isochrones(record: &Record, own: ReferenceKind) -> Result<Figure, ExactEr
     );
     chart.size = Size::PANEL;
     let reference = words::theory(own.name());
-    for (slot, theory) in few(theory_isochrones(case, own)?).into_iter().enumerate() {
+    let shown = few(theory_isochrones(case, own)?);
+    let slots = slots_of_times(&shown.iter().map(|theory| theory.time_factor).collect::<Vec<_>>());
+    for (place, (slot, theory)) in slots.into_iter().zip(shown).enumerate() {
         let name = isochrone_name(case.scene.is_large_strain(), &theory);
         let computed = computed_isochrone(record, theory.time_factor);
         chart.series.push(if has_waves {
             // Lines of waves cross: each has the colour of its time.
-            let name = if slot == 0 { reference.as_str() } else { "" };
+            let name = if place == 0 { reference.as_str() } else { "" };
             Series::new(name, theory.line).style(Style::Line).slot(slot)
         } else {
             Series::theory(reference.as_str(), theory.line).slot(0)
@@ -131,7 +151,7 @@ pub fn consolidation(shown: &[&Record], own: ReferenceKind) -> Result<Figure, Ex
     let theory = Series::theory(words::theory(own.name()), theory_consolidation(&shown[0].case, own, end)?);
     let run = |(slot, record): (usize, &&Record)| {
         let points = thinned(&computed_consolidation(record), slot, shown.len());
-        Series::new(record.case.method.to_string(), points).style(Style::Markers).slot(slot)
+        Series::new(record.case.method.to_string(), points).style(Style::Markers)
     };
     let series: Vec<Series> = std::iter::once(theory).chain(shown.iter().enumerate().map(run)).collect();
     let degree = ChartAxis::linear("degree of consolidation by settlement U (–)");
@@ -202,6 +222,14 @@ mod tests {
     use crate::case::planned::Tier;
 
     const TIMES: [f64; 3] = [0.05, 0.1, 0.2];
+
+    #[test]
+    fn a_time_has_the_same_colour_in_every_figure() {
+        assert_eq!(slots_of_times(&[0.05, 0.1, 0.2, 0.5, 1.0]), [1, 2, 3, 4, 6]);
+        assert_eq!(slots_of_times(&[0.00785, 0.0707, 0.197, 0.403, 0.848, 1.0]), [0, 1, 3, 4, 5, 6]);
+        let crowded = slots_of_times(&[0.1; 9]);
+        assert_eq!(crowded.iter().collect::<std::collections::BTreeSet<_>>().len(), 9, "{crowded:?}");
+    }
 
     #[test]
     fn curves_coincide_where_they_do_so_at_every_output_and_for_every_method() {

@@ -47,7 +47,7 @@ pub fn figure(found: &SeriesTable<'_>, measured: Measured) -> Option<Figure> {
     let names: Vec<String> = lines.iter().map(|one| name_of(one, sample)).collect();
     let ticks = words::ticks(lines.iter().flat_map(|one| points_of(one)).map(|point| point.0));
     let mut chart = Chart::new(
-        format!("Error of the {}", words::measured(quantity, sample)),
+        title_of(found.axis, &words::measured(quantity, sample), &lines, &names),
         ChartAxis::log10(words::axis(found.axis)).with_ticks(ticks),
         ChartAxis::log10(words::error_axis(quantity)),
     );
@@ -78,6 +78,23 @@ pub fn figure(found: &SeriesTable<'_>, measured: Measured) -> Option<Figure> {
     let caption = if found.has_orders() { classes(lines.iter().zip(&names)) } else { String::new() };
     let name = format!("{}-{}-{}", found.axis.name(), quantity.name(), sample.name());
     Some(Figure::new(crate::render::page::slug(&name), chart, caption + &part))
+}
+
+/// What the lines show: over the mesh which ends with the least error, over the step which is of the highest order.
+fn title_of(axis: Axis, measured: &str, lines: &[&Series<'_>], names: &[String]) -> String {
+    let named = lines.iter().zip(names).filter_map(|(one, name)| Some((one, name, one.ends()?[1].1.abs())));
+    let best = if axis == Axis::TimeStep {
+        let order = |one: &Series<'_>| one.order().unwrap_or(f64::NEG_INFINITY);
+        named.reduce(|a, b| if order(b.0) > order(a.0) { b } else { a })
+    } else {
+        named.reduce(|a, b| if b.2 < a.2 { b } else { a })
+    };
+    let Some((best, name, error)) = best else { return format!("Error of the {measured}") };
+    let order = best.order().map(|order| format!("order {}", number::order(order)));
+    let off = (axis != Axis::TimeStep).then(|| format!("{} at the end", number::percent(error)));
+    let found = [order, off].into_iter().flatten().collect::<Vec<_>>().join(", ");
+    let who = if lines.len() > 1 { format!("{name} is best, ") } else { String::new() };
+    format!("{}: {who}{found}", words::capitalised(measured))
 }
 
 /// Sizes of the levels with their finite errors: over the step with the differences between neighbouring steps.

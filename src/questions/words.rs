@@ -6,6 +6,9 @@ use crate::render::table::Cell;
 use crate::study::expectation::{Axis, NEXT_FINER};
 use oedometer_convergence::Class;
 
+/// What every cost is, wherever one stands.
+pub const COUNTED_WORK: &str = "counted operations times their calibrated times";
+
 /// The words beside an order that is not settled, or instead of one, with their meanings.
 const CLASSES: [(&str, &str); 8] = [
     ("pre-asymptotic", "the order still changes from mesh to mesh"),

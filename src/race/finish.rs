@@ -1,13 +1,13 @@
 //! The finishing line: where a contender brings its errors below a tolerance and keeps them there, what that costs, and why it
 //! does not arrive where it does not.
 
-use crate::record::race_errors::{ARRIVED, ERRORS, ROUGH, ReadOut, RunErrors};
+use crate::record::race_errors::{ARRIVED, ERRORS, LOOSEST, ROUGH, ReadOut, RunErrors, SMALLEST};
 use crate::record::reached::reached;
 use oedometer_soil::elementary;
 use serde::{Deserialize, Serialize};
 
 /// Other tolerances that an answer is tried at.
-pub const OTHER_TOLERANCES: [f64; 3] = [5e-3, 2e-2, 5e-2];
+pub const OTHER_TOLERANCES: [f64; 3] = [SMALLEST, 2e-2, LOOSEST];
 /// Share of the exact settlement below which a body locks.
 const LOCKED: f64 = 0.9;
 /// Order below which an error hardly falls any more.

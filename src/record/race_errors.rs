@@ -11,6 +11,8 @@ pub const ERRORS: usize = 3;
 pub const ROUGH: f64 = 1e-1;
 /// The finishing line.
 pub const ARRIVED: f64 = 1e-2;
+/// The loosest tolerance of the race.
+pub const LOOSEST: f64 = 5e-2;
 /// The smallest tolerance of the race: refinement ends where it is reached and confirmed.
 pub const SMALLEST: f64 = 5e-3;
 

@@ -4,7 +4,7 @@
 use crate::case::grouping::grouped;
 use crate::render::chart::draw::ends;
 use crate::render::chart::svg::Px;
-use crate::render::chart::{Chart, Series, Style};
+use crate::render::chart::{Chart, Series, Style, slots};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -51,9 +51,10 @@ impl Chart {
             .filter(|series| is_counted(series) && series.style != Style::Markers && !is_shown(&series.name));
         let grey = |series: &Series| Series::new("", series.points.clone()).style(Style::Context);
         let coloured = self.series.iter().filter(|series| !is_counted(series) || is_shown(&series.name));
+        let slots = slots(names);
         let placed = |series: &Series| {
             let place = names.iter().position(|name| *name == series.name);
-            Series { slot: series.slot.or(place), ..series.clone() }
+            Series { slot: series.slot.or(place.map(|place| slots[place])), ..series.clone() }
         };
         let series: Vec<Series> = context.map(grey).chain(coloured.map(placed)).collect();
         let mut panel = self.clone();

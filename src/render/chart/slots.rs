@@ -38,7 +38,8 @@ pub(super) fn colour_and_shape(slot: usize) -> (usize, usize, bool) {
 }
 
 /// The slot of each of these names, which are all different. A name may go on after its method, `GC-SRI-patch, implicit`. Names
-/// without a slot of their own take free ones in their order, of other colours as long as there are some.
+/// without a slot of their own take free ones in their order, of other colours as long as there are some; beside a method none
+/// that belongs to another method.
 pub fn slots(names: &[&str]) -> Vec<usize> {
     let mut slots: Vec<Option<usize>> = Vec::with_capacity(names.len());
     for name in names {
@@ -47,12 +48,16 @@ pub fn slots(names: &[&str]) -> Vec<usize> {
         let reserved = METHODS.iter().find(|(known, _)| *known == method).map(|(_, slot)| *slot);
         slots.push(reserved.filter(|slot| !slots.contains(&Some(*slot))));
     }
+    let has_methods = slots.iter().any(Option::is_some);
+    let is_reserved = |slot: usize| has_methods && METHODS.iter().any(|(_, reserved)| *reserved == slot);
     for place in 0..slots.len() {
         if slots[place].is_none() {
             let taken = |slot: usize| slots.contains(&Some(slot));
             let worn = |slot: usize| slots.iter().flatten().any(|other| other % COLOURS == slot % COLOURS);
-            let new_colour = (0..COLOURS).find(|slot| !worn(*slot));
-            slots[place] = new_colour.or_else(|| (0..=slots.len()).find(|slot| !taken(*slot)));
+            let mut free = (0..).filter(|slot| !is_reserved(*slot) && !taken(*slot));
+            let others = free.clone().take(2 * COLOURS);
+            let new_colour = others.into_iter().find(|slot| !worn(*slot));
+            slots[place] = new_colour.or_else(|| free.next());
         }
     }
     slots.into_iter().flatten().collect()
@@ -81,9 +86,9 @@ mod tests {
             (&["GC-SRI-patch", "MPM"], &[1, 6]),
             (&["MPM", "GC-SRI-patch, implicit"], &[6, 1]),
             (&["10 cells", "20 cells", "40 cells"], &[0, 1, 2]),
-            (&["uGIMP", "GC-Bbar-patch", "PPP"], &[1, 0, 12]),
-            (&["MPM, explicit", "MPM, implicit", "MPM-cells"], &[6, 0, 1]),
-            (&["a", "b", "c", "d", "e", "f", "g", "h", "MPM"], &[0, 1, 2, 3, 4, 5, 7, 8, 6]),
+            (&["uGIMP", "GC-Bbar-patch", "PPP"], &[15, 0, 12]),
+            (&["MPM, explicit", "MPM, implicit", "MPM-cells"], &[6, 15, 17]),
+            (&["a", "b", "c", "d", "e", "f", "g", "h", "MPM"], &[15, 17, 21, 23, 25, 26, 22, 24, 6]),
         ];
         for (names, expected) in cases {
             assert_eq!(slots(names), expected, "{names:?}");

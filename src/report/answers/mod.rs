@@ -9,7 +9,7 @@ pub use race::matrix_page;
 
 use crate::history::comparison::StudyComparison;
 use crate::judge::study_results::StudyResults;
-use crate::questions::answers;
+use crate::questions::answers_with;
 use crate::questions::expected::EXPECTED;
 use crate::questions::finding::{Finding, Place};
 use crate::questions::sentence;
@@ -47,7 +47,7 @@ impl<'a> Answers<'a> {
     ) -> Result<Self, ExactError> {
         let race = RaceFindings::from_studies(studies.iter().map(|one| (one.study, one.records)));
         let race = race.filter(|race| !race.situations.is_empty());
-        Ok(Self { studies, findings: answers(studies, Place::Report)?, race, changes })
+        Ok(Self { studies, findings: answers_with(studies, Place::Report, race.as_ref())?, race, changes })
     }
 
     /// The answer to a question.

@@ -1,5 +1,6 @@
 //! Which method should I take? The first screen of the front page, and the page with every method.
 
+use crate::campaign::refinement::MOST_WORK;
 use crate::case::contender::CONTENDERS;
 use crate::judge::study_check::StudyCheck;
 use crate::questions::choice::{
@@ -19,6 +20,7 @@ use crate::render::table::{Cell, Mood, Shade, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
 use crate::report::answers::Answers;
 use crate::report::sections::page_of;
+use serde::Serialize;
 
 /// The page of every method.
 const PAGE: &str = "race.html";
@@ -166,14 +168,13 @@ fn budget_table(findings: &RaceFindings) -> Table {
 /// Performance profiles of a group and read-out: staircases, those of the answers and of known methods in colour.
 fn profile_figure(findings: &RaceFindings, group: Group, read_out: ReadOut) -> Figure {
     let best = findings.best(group, read_out).map_or("", |one| &one.method);
-    let title = format!(
-        "Share of problems within a multiple of the least cost: {}, read {}",
-        words_of(group),
-        places_of(read_out)
-    );
+    let whole = findings.best(group, read_out).map_or("No method arrives".to_owned(), |one| {
+        format!("{} reaches 1 % in {} of {}", one.method, one.reached, one.of)
+    });
+    let title = format!("{whole}: {}, read {}", words_of(group), places_of(read_out));
     let mut chart = Chart::new(
         title,
-        ChartAxis::log10("cost to 1 %, over that of the cheapest method").between(1.0, LARGEST_TAU),
+        ChartAxis::log10("work to 1 %, over that of the cheapest method").between(1.0, LARGEST_TAU),
         ChartAxis::linear("share of problems").between(0.0, 1.0),
     );
     chart.naming = Naming::Ends;
@@ -239,7 +240,7 @@ pub fn matrix_page(findings: &RaceFindings) -> Page {
         "How to read",
         "rules",
         vec![Block::Paragraph(
-            sentence::filled(include_str!("race-rules.md"), &serde_json::json!({ "tolerance": ARRIVED }))
+            sentence::filled(include_str!("race-rules.md"), &Rules { tolerance: ARRIVED, most_work: MOST_WORK })
                 .unwrap_or_default(),
         )],
     ));
@@ -255,6 +256,15 @@ pub fn matrix_page(findings: &RaceFindings) -> Page {
         files: Some("race".to_owned()),
         ..Page::default()
     }
+}
+
+/// The numbers of the rules.
+#[derive(Serialize)]
+struct Rules {
+    /// The finishing line.
+    tolerance: f64,
+    /// Work that a mesh may take in one dimension and in the plane, s.
+    most_work: [f64; 2],
 }
 
 /// The links at the top of the page: back, its sections, and its tables.

@@ -1,10 +1,10 @@
-//! Timed runs of a study by error and wall time: the fronts of methods, the cheapest within each tolerance, and the noise of the
-//! session.
+//! Runs of a study by error and counted work: the fronts of methods, and the cheapest within each tolerance.
 
 use crate::case::{IntegratorKind, Quantity, SolverName};
 use crate::judge::paths::{first_error, grouped};
 use crate::judge::reaching::QuotedRuns;
-use crate::measure::statistics::{WallSpread, largest, median, noise_floor, paired_ratio, spread};
+use crate::measure::statistics::largest;
+use crate::record::calibration::cost_of;
 use crate::record::{Record, Status};
 use crate::study::expectation::CaseExpectation;
 use oedometer_convergence::{CostPoint, front};
@@ -12,15 +12,15 @@ use oedometer_convergence::{CostPoint, front};
 /// Tolerances of the comparison.
 const TOLERANCES: [f64; 3] = [1e-2, 1e-3, 1e-4];
 
-/// A timed run.
+/// A run with what it costs.
 #[derive(Clone, Debug)]
-pub struct TimedRun<'a> {
+pub struct CostedRun<'a> {
     /// The run.
     pub record: &'a Record,
     /// Error of the pore pressure at the points, the worst of all outputs.
     pub error: f64,
-    /// Wall time over the repeats, s.
-    pub wall: WallSpread,
+    /// Counted work, s.
+    pub work: f64,
 }
 
 /// The cheapest run within a tolerance.
@@ -28,41 +28,43 @@ pub struct TimedRun<'a> {
 pub struct Cheapest<'a> {
     /// The tolerance.
     pub tolerance: f64,
-    /// The run with the least wall time of those that reach it, where one does.
-    pub run: Option<TimedRun<'a>>,
+    /// The run with the least work of those that reach it, where one does.
+    pub run: Option<CostedRun<'a>>,
     /// Whether a finer mesh stays within it too.
     pub is_confirmed: bool,
+    /// Each method's least work within it, the cheapest first.
+    pub methods: Vec<(SolverName, f64)>,
 }
 
-/// Timed runs of one study.
+/// Runs of one study by their costs.
 #[derive(Clone, Debug)]
 pub struct WorkPrecision<'a> {
-    /// Every run that was timed alone, the cheapest first.
-    pub runs: Vec<TimedRun<'a>>,
+    /// Every sound run of which the work is counted, the cheapest first.
+    pub runs: Vec<CostedRun<'a>>,
     /// The cheapest run within each tolerance.
     pub cheapest: Vec<Cheapest<'a>>,
-    /// How far from 1 the ratio of a run to itself was in this session, the median over
-    /// the runs; `None` for fewer than two repeats.
-    pub noise_floor: Option<f64>,
 }
 
 impl<'a> WorkPrecision<'a> {
-    /// Compares the timed runs among records by the error against a reference, with what is expected of their cases; `None` where fewer
-    /// than two were timed.
+    /// Compares the runs among records by the error against a reference, with what is expected of their cases; `None` for fewer
+    /// than two.
     pub fn of(records: &'a [Record], reference: &str, expectations: &[CaseExpectation]) -> Option<Self> {
-        let mut runs: Vec<_> = records.iter().filter_map(|record| timed(record, reference)).collect();
+        let mut runs: Vec<_> = records.iter().filter_map(|record| costed(record, reference)).collect();
         if runs.len() < 2 {
             return None;
         }
-        runs.sort_by(|a, b| a.wall.median.total_cmp(&b.wall.median));
+        runs.sort_by(|a, b| a.work.total_cmp(&b.work));
         let quoted = QuotedRuns::new(records, expectations, |record| worst_error(record, reference));
         let cheapest = TOLERANCES.map(|tolerance| {
             let reaching = quoted.reaching(tolerance);
-            let run = runs.iter().find(|run| reaching.contains_key(run.record.hash.as_str()));
+            let within = || runs.iter().filter(|run| reaching.contains_key(run.record.hash.as_str()));
+            let run = within().next();
             let is_confirmed = run.is_some_and(|run| reaching[run.record.hash.as_str()]);
-            Cheapest { tolerance, run: run.cloned(), is_confirmed }
+            let of_method = grouped(within(), |run| run.record.case.method.to_string()).into_iter();
+            let methods = of_method.map(|(_, runs)| (runs[0].record.case.method, runs[0].work)).collect();
+            Cheapest { tolerance, run: run.cloned(), is_confirmed, methods }
         });
-        Some(Self { cheapest: cheapest.to_vec(), noise_floor: session_noise(&runs), runs })
+        Some(Self { cheapest: cheapest.to_vec(), runs })
     }
 }
 
@@ -74,7 +76,7 @@ pub struct MethodFront<'b, 'a> {
     /// Integrator.
     pub integrator: IntegratorKind,
     /// The runs, the cheapest first.
-    pub runs: Vec<&'b TimedRun<'a>>,
+    pub runs: Vec<&'b CostedRun<'a>>,
 }
 
 impl<'a> WorkPrecision<'a> {
@@ -84,7 +86,7 @@ impl<'a> WorkPrecision<'a> {
             (run.record.case.method.to_string(), run.record.case.integrator.name())
         });
         let fronts = groups.into_iter().map(|(_, runs)| {
-            let point = |run: &&TimedRun<'_>| CostPoint { cost: run.wall.median, error: run.error };
+            let point = |run: &&CostedRun<'_>| CostPoint { cost: run.work, error: run.error };
             let points: Vec<_> = runs.iter().map(point).collect();
             let best = runs.iter().zip(front(&points)).filter(|(_, on_front)| *on_front);
             MethodFront {
@@ -97,10 +99,10 @@ impl<'a> WorkPrecision<'a> {
     }
 }
 
-fn timed<'a>(record: &'a Record, reference: &str) -> Option<TimedRun<'a>> {
-    let wall = spread(&record.wall_alone())?;
-    let error = worst_error(record, reference).filter(|_| record.status == Status::Ok)?;
-    Some(TimedRun { record, error, wall })
+fn costed<'a>(record: &'a Record, reference: &str) -> Option<CostedRun<'a>> {
+    let error = worst_error(record, reference)
+        .filter(|_| record.status == Status::Ok && record.stability.is_none() && record.case.counts_work())?;
+    Some(CostedRun { record, error, work: cost_of(record) })
 }
 
 /// Error of the pore pressure at the points in its first norm, the worst of all outputs.
@@ -111,26 +113,10 @@ pub fn worst_error(record: &Record, reference: &str) -> Option<f64> {
     largest(errors.collect::<Option<Vec<_>>>()?)
 }
 
-/// A run compared with itself: even rounds with odd ones.
-fn session_noise(runs: &[TimedRun<'_>]) -> Option<f64> {
-    let floors: Vec<f64> = runs
-        .iter()
-        .filter_map(|run| {
-            let wall = run.record.wall_alone();
-            let half = wall.len() / 2;
-            let every_other =
-                |first: usize| wall.iter().skip(first).step_by(2).take(half).copied().collect::<Vec<_>>();
-            paired_ratio(&every_other(0), &every_other(1)).map(|ratio| noise_floor(&ratio))
-        })
-        .collect();
-    median(&floors)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::record::WallSample;
 
     const STUDY: &str = r#"title = "Costs"
 scene = "terzaghi"
@@ -147,29 +133,11 @@ time_step = [{ growth = 0.005 }]
 
     #[test]
     fn the_cheapest_run_within_a_tight_tolerance_is_of_second_order() {
-        let mut records = records_of(STUDY);
-        for record in &mut records {
-            // A cost that is the same on every machine.
-            let seconds = 1e-9 * record.counters.point_updates as f64;
-            record.wall = vec![WallSample { seconds, alone: true, ..WallSample::default() }; 2];
-        }
-        let precision = WorkPrecision::of(&records, "terzaghi", &[]).expect("timed runs");
+        let records = records_of(STUDY);
+        let precision = WorkPrecision::of(&records, "terzaghi", &[]).expect("runs");
         // Within the tightest tolerance that both reach, the cheapest is the method of second order.
         let cheapest = precision.cheapest[1].run.as_ref().expect("within 0.1 %");
         assert!(cheapest.record.case.label().starts_with("GC-SRI-patch"), "{}", cheapest.record.case.label());
-    }
-
-    #[test]
-    fn the_noise_of_a_session_is_how_far_a_run_is_off_itself() {
-        let mut records = records_of(&STUDY.replace("[5, 10, 20, 40, 80]", "[5, 10]"));
-        for record in &mut records {
-            // Every other time is a quarter longer.
-            record.wall = [1.0, 1.25, 1.0, 1.25, 1.0, 1.25, 7.0]
-                .map(|seconds| WallSample { seconds, alone: true, ..WallSample::default() })
-                .to_vec();
-        }
-        let noise = WorkPrecision::of(&records, "terzaghi", &[]).expect("timed runs").noise_floor;
-        assert!((noise.expect("six rounds") - 0.2).abs() < 1e-12, "{noise:?}");
     }
 
     #[test]
@@ -208,40 +176,36 @@ time_step = [{ growth = 0.005 }]
             assert!(worst(changed(Some(f64::NAN))).is_some_and(f64::is_nan), "{place}");
             assert_eq!(worst(changed(None)), None, "{place}");
             // Such a run takes no part in a comparison.
-            let mut runs = [plain, plain, changed(None)].map(with);
-            for run in &mut runs {
-                run.wall = vec![WallSample { seconds: 1.0, alone: true, ..WallSample::default() }; 2];
-            }
-            let precision = WorkPrecision::of(&runs, "terzaghi", &[]).expect("two timed runs");
+            let runs = [plain, plain, changed(None)].map(with);
+            let precision = WorkPrecision::of(&runs, "terzaghi", &[]).expect("two runs");
             assert_eq!(precision.runs.len(), 2, "{place}");
         }
     }
 
     #[test]
-    fn cost_is_the_median_on_the_front_and_within_a_tolerance() {
-        let mut records = records_of(&STUDY.replace("[5, 10, 20, 40, 80]", "[5, 10]"));
+    fn cost_is_counted_work_on_the_front_and_within_a_tolerance() {
+        let mut records = records_of(&STUDY.replace("[5, 10, 20, 40, 80]", "[5, 10, 20]"));
         records.truncate(3);
-        // By the shortest times the first would be on the front, by the longest the second would cost most.
-        let given = [([1.0, 10.0, 10.0], 2e-2), ([4.0, 5.0, 60.0], 8e-3), ([6.0, 6.0, 6.0], 8e-4)];
-        for (record, (times, error)) in records.iter_mut().zip(given) {
+        // The dearest of three meshes is the most accurate, the cheapest next; the middle one is off the front.
+        for (record, error) in records.iter_mut().zip([8e-3, 2e-2, 8e-4]) {
             record.errors.iter_mut().for_each(|row| row.value = error);
-            let sample = |seconds: f64, alone: bool| WallSample { seconds, alone, ..WallSample::default() };
-            record.wall = times.map(|seconds| sample(seconds, true)).to_vec();
-            record.wall.extend(vec![sample(0.1, false); 9]);
         }
-        let precision = WorkPrecision::of(&records, "terzaghi", &[]).expect("timed runs");
-        let found: Vec<_> = precision.runs.iter().map(|run| (run.wall.median, run.error)).collect();
-        assert_eq!(found, [(5.0, 8e-3), (6.0, 8e-4), (10.0, 2e-2)]);
+        let work: Vec<f64> = records.iter().map(cost_of).collect();
+        assert!(work[0] < work[1] && work[1] < work[2], "{work:?}");
+        let precision = WorkPrecision::of(&records, "terzaghi", &[]).expect("runs");
         let fronts = precision.fronts();
-        let best = fronts.iter().flat_map(|front| &front.runs).map(|run| run.wall.median);
-        assert_eq!(best.collect::<Vec<_>>(), [5.0, 6.0]);
+        let best = fronts.iter().flat_map(|front| &front.runs).map(|run| (run.work, run.error));
+        assert_eq!(best.collect::<Vec<_>>(), [(work[0], 8e-3), (work[2], 8e-4)]);
         let cheapest =
-            precision.cheapest.iter().map(|one| (one.tolerance, one.run.as_ref().map(|run| run.wall.median)));
-        let expected = [(1e-2, Some(5.0)), (1e-3, Some(6.0)), (1e-4, None)];
-        assert_eq!(cheapest.collect::<Vec<_>>(), expected);
-        for record in &mut records[1..] {
-            record.wall.retain(|sample| !sample.alone);
-        }
-        assert!(WorkPrecision::of(&records, "terzaghi", &[]).is_none(), "one run was timed alone");
+            precision.cheapest.iter().map(|one| (one.run.as_ref().map(|run| run.work), one.methods.len()));
+        // The first mesh is undone by the second.
+        assert_eq!(cheapest.collect::<Vec<_>>(), [(Some(work[2]), 1), (Some(work[2]), 1), (None, 0)]);
+        records[1].status = crate::campaign::runner::failed_at(1);
+        records[2].wall.clear();
+        assert_eq!(
+            WorkPrecision::of(&records, "terzaghi", &[]).map(|found| found.runs.len()),
+            Some(2),
+            "no clock is asked"
+        );
     }
 }
