@@ -408,8 +408,13 @@ pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
         heads: ["Cheapest", "ms", "cells", "step"].map(str::to_owned).to_vec(),
         rows: race.situations.iter().map(|one| plotted_row(one, &names, &terms)).collect(),
     });
-    let caption = "At the right: dearer. *Budget*: the error still falls when the meshes end; *plateau*: it stays; *inaccurate*: it is \
-                   large and stays, or ends the run. Work, here and everywhere: counted operations times their calibrated times.";
+    let caption = match read_out {
+        ReadOut::Points => {
+            "At the right: dearer. *Budget*: the error still falls when the meshes end; *plateau*: it stays; *inaccurate*: it is \
+             large and stays, or ends the run. Work, here and everywhere: counted operations times their calibrated times."
+        }
+        ReadOut::Centres => "Marks and words as where fields are read at the points.",
+    };
     Figure::new(format!("race-problems-{}", read_out.name()), chart, caption)
 }
 

@@ -106,9 +106,15 @@ fn loss(row: &SweepRow, ratios: &[f64]) -> Cell {
 
 /// What the figure shows: how many methods keep the pressure at every ratio.
 fn title_of(rows: &[&SweepRow], ratios: &[f64]) -> String {
-    let is_kept = |row: &&&SweepRow| (0..ratios.len()).all(|place| row.errors(place)[1].is_some_and(|error| error < KEPT));
+    let is_kept = |row: &&&SweepRow| {
+        (0..ratios.len()).all(|place| row.errors(place)[1].is_some_and(|error| error < KEPT))
+    };
     let kept = rows.iter().filter(is_kept).count();
-    format!("{kept} of {} methods keep the pressure at the points within {} %", rows.len(), number::number(100.0 * KEPT))
+    format!(
+        "{kept} of {} methods keep the pressure at the points within {} %",
+        rows.len(),
+        number::number(100.0 * KEPT)
+    )
 }
 
 /// The error of the pressure of all methods over a ratio spaced as 1 − 2ν.

@@ -180,7 +180,8 @@ mod tests {
             };
             record.errors.iter_mut().for_each(|row| row.value = error);
             // Twice as many points for as many steps.
-            record.counters = Counters { steps: 1000, points: if has_two { 1600 } else { 800 }, ..record.counters };
+            record.counters =
+                Counters { steps: 1000, points: if has_two { 1600 } else { 800 }, ..record.counters };
             if is_mpm && record.case.cells == 8 {
                 record.status = failed_at(3);
             }

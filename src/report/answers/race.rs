@@ -240,8 +240,11 @@ pub fn matrix_page(findings: &RaceFindings) -> Page {
         "How to read",
         "rules",
         vec![Block::Paragraph(
-            sentence::filled(include_str!("race-rules.md"), &Rules { tolerance: ARRIVED, most_work: MOST_WORK })
-                .unwrap_or_default(),
+            sentence::filled(
+                include_str!("race-rules.md"),
+                &Rules { tolerance: ARRIVED, most_work: MOST_WORK },
+            )
+            .unwrap_or_default(),
         )],
     ));
     if !findings.properties.is_empty() {
