@@ -1,13 +1,13 @@
 //! A study as typed: every value with its place in the text, before any check.
 
 use crate::case::{Key, Norm, Quantity, Sample, Task, Tier};
-use crate::study::diagnostic::StudyError;
 use crate::study::expectation::{Axis, NEXT_FINER, NO_REFERENCE};
 use crate::study::inputs::{Inputs, add_inputs, add_units, take_inputs};
 use crate::study::reading::{Placed, Typed};
 use crate::study::solver::PRESETS;
 use oedometer_convergence::Class;
 use oedometer_exact::reference::ReferenceKind;
+use oedometer_foreign::mending::Unread;
 pub use oedometer_foreign::source::StudySource;
 use oedometer_scenes::Scene;
 use oedometer_soil::layers::SoilLayer;
@@ -88,8 +88,8 @@ impl StudyFile {
     /// Reads a study; the inputs of its tables by the table of keys, all else by serde.
     ///
     /// # Errors
-    /// Keys that are not known and values of a wrong kind, all at their places.
-    pub fn read(source: &StudySource) -> Result<Self, StudyError> {
+    /// Keys that are not known and values of a wrong kind, all at their places, with what the text says but for these.
+    pub fn read(source: &StudySource) -> Result<Self, Box<Unread<Self>>> {
         source.read_by(|mut root| {
             let mut take = |table: &str, of: &str| take_inputs(root.as_mut(), table, of, table == "sweep");
             let single = ["column", "points", "material", "integrator", "layer", "manufactured"];

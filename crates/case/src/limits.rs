@@ -22,7 +22,6 @@ pub struct Refusal {
 }
 
 const OWN_BLOCK: &str = "give each integrator a [[sweep]] block of its own, or zip both axes with `path`";
-const NAME_THE_STEP: &str = "name the step: `time_step = [{ courant = 0.4 }]`, or in seconds";
 
 impl Case {
     /// Every reason why the case cannot be.
@@ -63,25 +62,27 @@ impl Case {
     }
 }
 
-/// Steps, integrators and formulations that are not in the lists of scene and integrator.
+/// Steps, integrators and formulations that are not in the lists of scene and integrator: of each the first list that lacks it.
 fn choices_outside_lists(scene: &Scene, it: &Setup<'_>) -> Vec<Refusal> {
     let Setup { integrator, formulation, .. } = it;
     let by_integrator = "give each integrator a [[sweep]] block of its own, or leave `formulation` out";
+    let searched = (it.is_search && *integrator != IntegratorKind::Explicit).then_some((
+        "the critical step is searched with explicit steps",
+        "take `integrator = [\"explicit\"]`, or leave the key out",
+    ));
     let [integrators, formulations] = [
         (!scene.integrators.has(integrator)).then_some((scene.integrators.why, scene.integrators.instead)),
         (!scene.formulations.has(formulation))
             .then_some((scene.formulations.why, scene.formulations.instead)),
     ];
+    let of_integrator = integrator.refuses_formulation(*formulation).map(|why| (why, by_integrator));
     let lists = [
         ("time_step", integrator.refuses_rule(it.time_step).map(|why| (why, OWN_BLOCK))),
-        ("integrator", integrators),
-        ("formulation", integrator.refuses_formulation(*formulation).map(|why| (why, by_integrator))),
-        ("formulation", formulations),
+        ("integrator", integrators.or(searched)),
+        ("formulation", of_integrator.or(formulations)),
     ];
-    lists
-        .into_iter()
-        .filter_map(|(key, refusal)| refusal.map(|(why, help)| Refusal { key, why, help }))
-        .collect()
+    let refusals = lists.into_iter().filter_map(|(key, refusal)| Some((key, refusal?)));
+    refusals.map(|(key, (why, help))| Refusal { key, why, help }).collect()
 }
 
 /// Whether points in one set move by explicit steps.
@@ -98,24 +99,10 @@ fn moves_domains_explicitly(it: &Setup<'_>) -> bool {
 /// Limits of all scenes.
 static LIMITS: &[Limit] = &[
     Limit {
-        key: "integrator",
-        refuses: |it| it.is_search && it.integrator != IntegratorKind::Explicit,
-        why: "the critical step is searched with explicit steps",
-        instead: "take `integrator = [\"explicit\"]`, or leave the key out",
-    },
-    Limit {
         key: "affine",
         refuses: |it| it.settings.affine && !moves_points_explicitly(it),
         why: "APIC needs points that move by explicit steps, in one set: a case of this sweep has none",
         instead: "leave `affine` out there, or give those methods and integrators a [[sweep]] block of their own",
-    },
-    Limit {
-        key: "affine",
-        refuses: |it| {
-            it.settings.affine && moves_points_explicitly(it) && matches!(it.time_step, TimeStep::Stable(_))
-        },
-        why: "the critical step with APIC is not predicted: `stable` cannot be used",
-        instead: NAME_THE_STEP,
     },
     Limit {
         key: "stress_slopes",
@@ -125,14 +112,14 @@ static LIMITS: &[Limit] = &[
         instead: "leave `stress_slopes` out there, or give those methods and integrators a [[sweep]] block of their own",
     },
     Limit {
-        key: "stress_slopes",
+        key: "time_step",
         refuses: |it| {
-            it.settings.stress_slopes
-                && moves_domains_explicitly(it)
-                && matches!(it.time_step, TimeStep::Stable(_))
+            let is_affine = it.settings.affine && moves_points_explicitly(it);
+            let has_slopes = it.settings.stress_slopes && moves_domains_explicitly(it);
+            matches!(it.time_step, TimeStep::Stable(_)) && (is_affine || has_slopes)
         },
-        why: "the critical step with stress slopes is not predicted: `stable` cannot be used",
-        instead: NAME_THE_STEP,
+        why: "the critical step with APIC or stress slopes is not predicted: `stable` cannot be used",
+        instead: "name the step: `time_step = [{ courant = 0.4 }]`, or in seconds",
     },
     Limit {
         key: "offset",
@@ -257,21 +244,23 @@ mod tests {
                 case.time_step = time_step;
                 case.column.points.sets = sets;
                 (case.settings.affine, case.settings.stress_slopes) = (affine, stress_slopes);
-                let with_step_named = |refusal: Refusal| (refusal.key, refusal.help == NAME_THE_STEP);
-                case.refusals().map(with_step_named).collect::<Vec<_>>()
+                case.refusals().map(|refusal| refusal.key).collect::<Vec<_>>()
             };
             let place = format!("{scene:?} {method} {integrator:?} {sets}");
             let (by_hand, by_limit) = (TimeStep::Seconds(1.0), TimeStep::Stable(0.5));
-            let wanted = |key, is_taken: bool, is_by_limit: bool| {
-                (!is_taken || is_by_limit).then_some((key, is_taken)).into_iter().collect::<Vec<_>>()
-            };
             for (rule, is_by_limit) in [(by_hand, false), (by_limit, true)] {
-                assert_eq!(refused(false, false, rule), [], "{place}");
-                let affine = wanted("affine", takes_affine, is_by_limit);
-                let slopes = wanted("stress_slopes", takes_slopes, is_by_limit);
-                assert_eq!(refused(true, false, rule), affine, "{place}");
-                assert_eq!(refused(false, true, rule), slopes, "{place}");
-                assert_eq!(refused(true, true, rule), [affine, slopes].concat(), "{place}");
+                for (affine, slopes) in [(false, false), (true, false), (false, true), (true, true)] {
+                    let is_unpredicted = is_by_limit && (affine && takes_affine || slopes && takes_slopes);
+                    let wanted: Vec<&str> = [
+                        ("affine", affine && !takes_affine),
+                        ("stress_slopes", slopes && !takes_slopes),
+                        ("time_step", is_unpredicted),
+                    ]
+                    .into_iter()
+                    .filter_map(|(key, is_refused)| is_refused.then_some(key))
+                    .collect();
+                    assert_eq!(refused(affine, slopes, rule), wanted, "{place} {affine} {slopes}");
+                }
             }
         }
     }
@@ -290,8 +279,8 @@ mod tests {
     /// What is said of the cases of the table below that are refused, by their rows.
     const ALL_REFUSALS: &str = r#"
 0 task: the critical step of an attached solver cannot be searched: name methods of this program alone, or leave `task` out
-1 affine: the critical step with APIC is not predicted: `stable` cannot be used: name the step: `time_step = [{ courant = 0.4 }]`, or in seconds
-2 stress_slopes: the critical step with stress slopes is not predicted: `stable` cannot be used: name the step: `time_step = [{ courant = 0.4 }]`, or in seconds
+1 time_step: the critical step with APIC or stress slopes is not predicted: `stable` cannot be used: name the step: `time_step = [{ courant = 0.4 }]`, or in seconds
+2 time_step: the critical step with APIC or stress slopes is not predicted: `stable` cannot be used: name the step: `time_step = [{ courant = 0.4 }]`, or in seconds
 3 sets: the domains of water points follow the water where points move, and the domains of this basis do not: take the basis "cpgimp" or "cpdi", or `sets = 1`
 4 sets: the domains of water points follow the water where points move, and the domains of this basis do not: take the basis "cpgimp" or "cpdi", or `sets = 1`
 8 sets: the projection needs pressures at the points of the skeleton: take the method "VP", or `sets = 1`

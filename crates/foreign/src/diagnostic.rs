@@ -112,10 +112,14 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|(_, candidate)| candidate)
 }
 
+/// The candidate that a word was probably meant to be.
+pub(crate) fn near_word<'a>(word: &str, candidates: &[&'a str]) -> Option<&'a str> {
+    usual_word(word, candidates).or_else(|| nearest(word, candidates.iter().copied()))
+}
+
 /// Help for a word that is not among the candidates.
 pub fn one_of(word: &str, candidates: &[&str]) -> String {
-    let near = usual_word(word, candidates).or_else(|| nearest(word, candidates.iter().copied()));
-    match near {
+    match near_word(word, candidates) {
         Some(near) if candidates.len() > MOST_LISTED => {
             format!("did you mean `{near}`? `oedometer list` has all {}", candidates.len())
         }

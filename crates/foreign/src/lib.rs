@@ -11,6 +11,7 @@ mod ending;
 pub mod git;
 mod identity;
 pub mod import;
+pub mod mending;
 mod process;
 pub mod reading;
 pub mod solver;

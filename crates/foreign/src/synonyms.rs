@@ -240,32 +240,50 @@ pub const WORDS: &[(&[&str], &str)] = &[
     (&["tresca"], "von-mises"),
 ];
 
-/// What to write instead of an unknown key.
-pub(crate) fn help_for_key(name: &str, known: &[&str]) -> String {
-    if let Some((_, new)) = RENAMED.iter().find(|(old, new)| *old == name && known.contains(new)) {
-        return format!("it is called `{new}` now");
-    }
-    if known.contains(&read_as(name)) {
-        return format!("it is another name of `{}`: leave one of them out", read_as(name));
-    }
-    let usual = meant(KEY_NAMES, name).filter(|key| *key != name);
-    if let Some(key) = usual.filter(|key| known.contains(key)) {
-        return format!("did you mean `{key}`?");
-    }
-    if let Some(how) = derived(name) {
-        return how.to_owned();
-    }
-    if let Some(near) = nearest(name, known.iter().copied()) {
-        return format!("did you mean `{near}`?");
-    }
-    if let Some((table, _)) = TABLE_KEYS.iter().find(|(_, keys)| keys.contains(&usual.unwrap_or(name))) {
-        let key = usual.unwrap_or(name);
-        return format!("`{key}` belongs to [{table}]: `{table}.{key}`");
-    }
-    let elsewhere = |wanted: &str| KEYS.iter().find(|key| key.name == wanted);
-    match elsewhere(name).or_else(|| elsewhere(usual?)) {
-        Some(key) => belongs(key),
-        None => format!("the keys here are {}", known.join(", ")),
+/// What is known of a key that a table does not have.
+pub(crate) struct UnknownKey<'a> {
+    /// What to write instead.
+    pub(crate) help: String,
+    /// The key that was meant.
+    pub(crate) meant: Option<&'a str>,
+    /// The table that has it.
+    pub(crate) home: Option<&'static str>,
+}
+
+impl<'a> UnknownKey<'a> {
+    /// A name that is not among the known ones.
+    pub(crate) fn among(name: &str, known: &[&'a str]) -> Self {
+        let has = |wanted: &str| known.iter().copied().find(|key| *key == wanted);
+        let (mut meant, mut home) = (None, None);
+        let help = if let Some(new) = RENAMED.iter().find_map(|(old, new)| has(new).filter(|_| *old == name)) {
+            meant = Some(new);
+            format!("it is called `{new}` now")
+        } else if has(read_as(name)).is_some() {
+            format!("it is another name of `{}`: leave one of them out", read_as(name))
+        } else {
+            let usual = self::meant(KEY_NAMES, name).filter(|key| *key != name);
+            let near = || nearest(name, known.iter().copied());
+            meant = usual.and_then(has).or_else(|| near().filter(|_| derived(name).is_none()));
+            let of_key = |name: &str| KEYS.iter().find(|key| key.name == name).map(|key| (key.name, table_of(key)));
+            let key = usual.unwrap_or(name);
+            let of_table = || TABLE_KEYS.iter().find_map(|(table, keys)| {
+                let key = keys.iter().find(|known| **known == key)?;
+                Some((*key, *table))
+            });
+            let elsewhere = || of_table().or_else(|| of_key(name)).or_else(|| of_key(key));
+            if let Some(meant) = meant {
+                format!("did you mean `{meant}`?")
+            } else if let Some(how) = derived(name) {
+                how.to_owned()
+            } else if let Some((key, table)) = elsewhere() {
+                home = Some(table);
+                let header = if table == "sweep" { "[[sweep]]".to_owned() } else { format!("[{table}]") };
+                format!("`{key}` belongs to {header}: `{table}.{key}`")
+            } else {
+                format!("the keys here are {}", known.join(", "))
+            }
+        };
+        Self { help, meant, home }
     }
 }
 
@@ -274,13 +292,9 @@ pub(crate) fn derived(name: &str) -> Option<&'static str> {
     meant(DERIVED, name)
 }
 
-/// Where a key belongs.
-fn belongs(key: &Key) -> String {
-    let name = key.name;
-    match key.tables.iter().find(|table| **table != "sweep") {
-        Some(table) => format!("`{name}` belongs to [{table}]: `{table}.{name}`"),
-        None => format!("`{name}` belongs to [[sweep]]: `sweep.{name}`"),
-    }
+/// The table that has a key: the study's own before a sweep.
+fn table_of(key: &Key) -> &'static str {
+    key.tables.iter().copied().find(|table| *table != "sweep").unwrap_or("sweep")
 }
 
 /// The word among the known ones that another program or textbook calls differently.

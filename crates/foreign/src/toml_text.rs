@@ -1,8 +1,9 @@
 //! Reads TOML into a type, and explains every mistake at its place by the type's JSON Schema.
 
-use crate::diagnostic::{Diagnostic, StudyError, one_of};
+use crate::diagnostic::{Diagnostic, StudyError, near_word, one_of};
+use crate::mending::{Block, LeftOut, Mend, Mends, Rest, Unread};
 use crate::source::StudySource;
-use crate::synonyms::{FIELD_TERMS, derived, help_for_key, read_as};
+use crate::synonyms::{FIELD_TERMS, UnknownKey, derived, read_as};
 use crate::units::{has_unit, in_si, is_thousands, leading_number};
 use oedometer_case::keys::Key;
 use schemars::JsonSchema;
@@ -71,33 +72,49 @@ impl StudySource {
     /// Every key that is not known, with the nearest one, and every value of a wrong kind; or where the text is not
     /// TOML.
     pub fn read<T: DeserializeOwned + JsonSchema>(&self) -> Result<T, StudyError> {
-        self.read_by(|root| T::deserialize(Deserializer::from(root)))
+        let read = self.read_by(|root| T::deserialize(Deserializer::from(root)));
+        read.map_err(|unread| unread.error)
     }
 
     /// Reads TOML by a function, whose refusal the schema of its type explains. Numbers with units, like `"50 kPa"`,
     /// reach it as numbers in SI units, where the schema names the unit of their key.
     ///
     /// # Errors
-    /// As [`read`](Self::read).
+    /// As [`read`](Self::read), with what the text says but for its mistakes.
     pub fn read_by<T: JsonSchema>(
         &self,
         read: impl Fn(Spanned<DeTable<'_>>) -> Result<T, Error>,
-    ) -> Result<T, StudyError> {
-        let mut root = DeTable::parse(&self.text).map_err(|error| self.error(vec![self.syntax(&error)]))?;
+    ) -> Result<T, Box<Unread<T>>> {
+        let unread = |found, rest| Box::new(Unread { error: self.error(found), rest });
+        let mut root =
+            DeTable::parse(&self.text).map_err(|error| unread(vec![self.syntax(&error)], None))?;
         if FIELD_TERMS.iter().any(|(term, _)| self.text.contains(term)) {
             read_terms(&schema_of::<T>(), root.as_mut());
         }
         read(root.clone()).or_else(|error| {
-            let mut mistakes = Mistakes { text: &self.text, found: Vec::new(), quantities: Vec::new() };
+            let mut mistakes = Mistakes { text: &self.text, ..Mistakes::default() };
             mistakes.of_table(&schema_of::<T>(), root.get_ref(), 0..0, "");
-            if mistakes.found.is_empty() && !mistakes.quantities.is_empty() {
-                return read(in_numbers(root, &mistakes.quantities))
-                    .map_err(|error| self.error(vec![self.syntax(&error)]));
+            let Mistakes { found, mends, unknown, is_unreadable, .. } = mistakes;
+            let in_block = |(place, key, home): (usize, String, Option<&'static str>)| {
+                let block = Block::at(root.get_ref(), place)?;
+                Some(match home {
+                    Some(table) => LeftOut { key, table: table.to_owned(), block: None },
+                    None => LeftOut { key, table: block.table.clone(), block: Some(block) },
+                })
+            };
+            let left_out = unknown.into_iter().filter_map(in_block).collect();
+            let places = found.iter().filter_map(|mistake| mistake.span.clone()).collect();
+            let place = root.span();
+            let mended = || read(Spanned::new(place, mends.of_table(root.into_inner())));
+            match (found.is_empty(), is_unreadable) {
+                (true, _) if mends.0.is_empty() => Err(unread(vec![self.syntax(&error)], None)),
+                (true, _) => mended().map_err(|error| unread(vec![self.syntax(&error)], None)),
+                (false, true) => Err(unread(found, None)),
+                (false, false) => {
+                    let rest = mended().ok().map(|read| Rest { read, places, left_out });
+                    Err(unread(found, rest))
+                }
             }
-            if mistakes.found.is_empty() {
-                mistakes.found.push(self.syntax(&error));
-            }
-            Err(self.error(mistakes.found))
         })
     }
 
@@ -229,56 +246,60 @@ fn read_terms_of(schema: &Value, value: &mut Spanned<DeValue<'_>>) {
     }
 }
 
-/// A text with the numbers of quantities in place of the words that stand there.
-fn in_numbers<'a>(
-    mut root: Spanned<DeTable<'a>>,
-    quantities: &'a [(Range<usize>, String)],
-) -> Spanned<DeTable<'a>> {
-    fn replace<'a>(value: &mut Spanned<DeValue<'a>>, quantities: &'a [(Range<usize>, String)]) {
-        let place = value.span();
-        match value.as_mut() {
-            DeValue::Table(table) => table.iter_mut().for_each(|(_, inner)| replace(inner, quantities)),
-            DeValue::Array(list) => list.iter_mut().for_each(|inner| replace(inner, quantities)),
-            word @ DeValue::String(_) => {
-                let number = quantities.iter().find(|(span, _)| *span == place);
-                if let Some(Ok(number)) = number.map(|(_, text)| DeValue::parse(text)) {
-                    *word = number.into_inner();
-                }
-            }
-            _ => {}
-        }
-    }
-    root.as_mut().iter_mut().for_each(|(_, inner)| replace(inner, quantities));
-    root
-}
-
 /// Mistakes in a text, as they are found.
+#[derive(Default)]
 struct Mistakes<'a> {
     text: &'a str,
     found: Vec<Diagnostic>,
-    /// Words that are numbers with units: their places, and the numbers in SI units.
-    quantities: Vec<(Range<usize>, String)>,
+    /// What becomes of wrong keys and values, and of words that are numbers with units: these in SI units.
+    mends: Mends,
+    /// Keys whose values are unknown: a place in their block, the name, and the table that they belong to if that is another.
+    unknown: Vec<(usize, String, Option<&'static str>)>,
+    /// Whether a whole block is wrong, without which nothing can be read.
+    is_unreadable: bool,
 }
 
+/// Tables of the body and its soil, on which all others rest.
+const BODY: [&str; 3] = ["column", "layer", "material"];
+
 impl Mistakes<'_> {
+    /// Notes a mistake, and what becomes of the key or value at its place.
+    fn note(&mut self, place: Range<usize>, message: String, help: impl Into<String>, mend: Mend) {
+        self.found.push(Diagnostic::at(place.clone(), message, help));
+        self.mends.0.push((place, mend));
+    }
+
+    /// Notes that the value of a key is not known.
+    fn doubt(&mut self, place: &Range<usize>, key: &str, home: Option<&'static str>) {
+        self.unknown.push((place.start, key.to_owned(), home));
+    }
+
     /// The mistakes of a table under a key; the whole text has none.
     fn of_table(&mut self, schema: &Value, table: &DeTable<'_>, place: Range<usize>, key: &str) {
         let Some(properties) = schema["properties"].as_object() else { return };
         for (name, value) in table {
             if let Some(schema) = properties.get(name.get_ref().as_ref()) {
                 self.of_value(schema, value, name.get_ref());
-            } else {
-                let known: Vec<&str> = properties.keys().map(String::as_str).collect();
-                let message = format!("unknown key `{}`", cut(name.get_ref()));
-                self.found.push(Diagnostic::at(name.span(), message, help_for_key(name.get_ref(), &known)));
+                continue;
             }
+            let known: Vec<&str> = properties.keys().map(String::as_str).collect();
+            let message = format!("unknown key `{}`", cut(name.get_ref()));
+            let unknown = UnknownKey::among(name.get_ref(), &known);
+            let meant = unknown.meant.filter(|meant| !table.contains_key(*meant));
+            if meant.is_none() && (unknown.home.is_some() || BODY.contains(&key)) {
+                self.doubt(&name.span(), name.get_ref(), unknown.home);
+            }
+            let mend = meant.map_or(Mend::LeftOut, |meant| Mend::Renamed(meant.to_owned()));
+            self.note(name.span(), message, unknown.help, mend);
         }
         for name in schema["required"].as_array().into_iter().flatten().filter_map(Value::as_str) {
             if !table.contains_key(name) {
                 let whole = if key.is_empty() { "the study" } else { key };
                 let message = format!("`{name}` is missing in {whole}");
                 let example = example_of(&properties[name]);
-                self.found.push(Diagnostic::at(place.clone(), message, format!("add `{name} = {example}`")));
+                self.is_unreadable |= !self.text.get(place.clone()).unwrap_or_default().starts_with('{');
+                self.doubt(&place, key, None);
+                self.note(place.clone(), message, format!("add `{name} = {example}`"), Mend::LeftOut);
             }
         }
     }
@@ -300,14 +321,22 @@ impl Mistakes<'_> {
                 let names = names_of(schema);
                 if !names.contains(&word.as_ref()) {
                     let message = format!("no {key} is called `{}`", cut(word));
-                    self.found.push(Diagnostic::at(value.span(), message, one_of(word, &names)));
+                    let mend = match near_word(word, &names) {
+                        Some(near) => Mend::Written(format!("{near:?}")),
+                        None => Mend::LeftOut,
+                    };
+                    if matches!(mend, Mend::LeftOut) {
+                        self.doubt(&value.span(), key, None);
+                    }
+                    self.note(value.span(), message, one_of(word, &names), mend);
                 }
             }
             DeValue::String(text) if schema["unit"].is_string() => {
                 match in_si(text, schema["unit"].as_str().unwrap_or_default()) {
-                    Ok(number) => self.quantities.push((value.span(), format!("{number:?}"))),
+                    Ok(number) => self.mends.0.push((value.span(), Mend::Written(format!("{number:?}")))),
                     Err((message, help)) => {
-                        self.found.push(Diagnostic::at(value.span(), format!("`{key}`: {message}"), help));
+                        self.doubt(&value.span(), key, None);
+                        self.note(value.span(), format!("`{key}`: {message}"), help, Mend::LeftOut);
                     }
                 }
             }
@@ -325,6 +354,11 @@ impl Mistakes<'_> {
         // A value inside a list is shown inside a list.
         let before = self.text.get(..value.span().start).unwrap_or_default().trim_end();
         let in_list = |right: String| if before.ends_with(['[', ',']) { format!("[{right}]") } else { right };
+        let mut mend = match kind {
+            "array" | "object" => Mend::LeftOut,
+            _ => Mend::Written(example_of(schema)),
+        };
+        let mut is_known = false;
         let help = match value.get_ref() {
             DeValue::Table(_) if is_block => {
                 format!("a block that may be repeated has double brackets: [[{key}]]")
@@ -337,13 +371,17 @@ impl Mistakes<'_> {
                 format!("several values belong in a [[sweep]]: `{key} = {written}`")
             }
             DeValue::String(word) if is_number => match word.trim().parse::<f64>() {
-                Ok(_) => format!("write it without quotes: `{key} = {}`", in_list(word.to_string())),
+                Ok(_) => {
+                    (mend, is_known) = (Mend::Written(word.trim().to_owned()), true);
+                    format!("write it without quotes: `{key} = {}`", in_list(word.to_string()))
+                }
                 Err(_) => format!(
                     "it has no unit: write it as a plain number without quotes, like `{key} = {}`",
                     example_of(schema)
                 ),
             },
             typed if kind == "array" && fits(&schema["items"], typed) => {
+                (mend, is_known) = (Mend::Listed, true);
                 format!("write `{key} = [{written}]`")
             }
             _ => format!("write it like `{key} = {}`", in_list(example_of(schema))),
@@ -356,11 +394,13 @@ impl Mistakes<'_> {
             "object" => "a table",
             _ => "a word in quotes",
         };
-        self.found.push(Diagnostic::at(
-            value.span(),
-            format!("`{key}` takes {wanted}, not `{written}`"),
-            help,
-        ));
+        self.is_unreadable |= self.text.get(value.span()).unwrap_or_default().starts_with('[')
+            && matches!(value.get_ref(), DeValue::Table(_));
+        self.is_unreadable |= is_block && matches!(value.get_ref(), DeValue::Table(_));
+        if !is_known {
+            self.doubt(&value.span(), key, None);
+        }
+        self.note(value.span(), format!("`{key}` takes {wanted}, not `{written}`"), help, mend);
     }
 }
 

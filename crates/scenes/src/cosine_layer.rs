@@ -16,7 +16,7 @@ pub static COSINE_LAYER: Scene = Scene {
     locks: true,
     load: LoadKind::Cosine,
     column: Column::layer,
-    takes: &["points", "length", "height", "base", "load"],
+    takes: &["points", "load"],
     references: &[
         SceneReference::own(ReferenceKind::CosineLayer),
         SceneReference::beside(ReferenceKind::CosineLayerIncompressible, |_| Some("the water's storage")),

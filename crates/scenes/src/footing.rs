@@ -24,7 +24,7 @@ pub static FOOTING: Scene = Scene {
     column: Column::under_footing,
     soil: clay,
     laws: Laws::Only(Law::VonMises),
-    takes: &["length", "height", "base", "plate_width", "plate", "undrained", "undrained_strength"],
+    takes: &["plate_width", "plate", "undrained", "undrained_strength"],
     integrators: Allowed {
         list: &[IntegratorKind::Implicit],
         why: "the plate is pushed so slowly that nothing has inertia: the integrator is `implicit`",

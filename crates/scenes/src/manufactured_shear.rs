@@ -15,7 +15,7 @@ pub static MANUFACTURED_SHEAR: Scene = Scene {
     motion: Some(MODEL),
     column: || square([0.25, -0.2, 0.0]),
     soil: || Material { law: MODEL.law, ..soil() },
-    takes: &["amplitude_x", "amplitude_y", "frequency", "pressure"],
+    takes: &["amplitude_x", "amplitude_y"],
     references: &[SceneReference::own(ReferenceKind::Manufactured(MODEL))],
     ..OF_ALL
 };

@@ -15,7 +15,7 @@ pub static MANUFACTURED_VORTEX: Scene = Scene {
     motion: Some(MODEL),
     column: || square([0.0, 0.0, 1.5]),
     soil: || Material { law: MODEL.law, ..soil() },
-    takes: &["amplitude", "frequency", "pressure"],
+    takes: &["amplitude"],
     references: &[SceneReference::own(ReferenceKind::Manufactured(MODEL))],
     ..OF_ALL
 };

@@ -117,6 +117,15 @@ impl Body {
         matches!(self, Self::Layer | Self::Square)
     }
 
+    /// Keys of a study that every problem of such a body has.
+    pub fn keys(self) -> &'static [&'static str] {
+        match self {
+            Self::Column | Self::Slab => &["height", "width", "load", "dimensions"],
+            Self::Layer => &["length", "height", "base"],
+            Self::Square => &["frequency", "pressure"],
+        }
+    }
+
     /// The table of a study that has its geometry, and what is done to it.
     pub fn table(self) -> &'static str {
         match self {
@@ -332,17 +341,7 @@ impl Scene {
 
     /// Whether a study of it may have a key of geometry, history or points.
     pub fn takes(&self, key: &str) -> bool {
-        self.takes.contains(&key)
-    }
-
-    /// Says why the scene has no such amplitude, where it has not.
-    pub fn refuses_amplitude(&self, key: &str) -> Option<&'static str> {
-        let is_refused = self.motion.is_some() && key.starts_with("amplitude") && !self.takes(key);
-        is_refused.then_some(if self.takes("amplitude") {
-            "a vortex has one amplitude, its largest angle: `amplitude`"
-        } else {
-            "this motion has two amplitudes: `amplitude_x` and `amplitude_y`"
-        })
+        self.body.keys().contains(&key) || self.takes.contains(&key)
     }
 
     /// Whether a quantity is measured in it.

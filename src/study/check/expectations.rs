@@ -4,6 +4,7 @@ use crate::case::keys::{MOST_CELLS, MOST_POINTS};
 use crate::case::{Case, Norm, PlannedCase, Quantity, Sample, Task, Value};
 use crate::study::Purpose;
 use crate::study::check::Checker;
+use crate::study::check::doubts::Basis;
 use crate::study::diagnostic::Diagnostic;
 use crate::study::expectation::{
     Axis, Bounds, CaseDemand, CaseExpectation, ErrorRange, Measure, NEXT_FINER, NO_REFERENCE, Selection,
@@ -16,7 +17,8 @@ use oedometer_convergence::{Class, ErrorBound, FloorBand, KnownFailure, OrderBan
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_problem::outcome::FailureKind;
 use oedometer_scenes::Scene;
-use oedometer_scenes::scene::Question;
+use oedometer_scenes::column::Column;
+use oedometer_scenes::scene::{LoadKind, Question};
 use oedometer_soil::wording::count_of;
 use std::ops::Range;
 
@@ -42,6 +44,21 @@ pub(super) struct Subject<'a> {
     pub(super) plate_width: Option<f64>,
 }
 
+impl<'a> Subject<'a> {
+    /// What the cases of a study, of whom one without a sweep has a column, have in common.
+    pub(super) fn of(
+        scene: &'static Scene,
+        references: &'a [ReferenceKind],
+        planned: &'a [PlannedCase],
+        column: &Column,
+    ) -> Self {
+        let height = planned.first().map_or(column.height, |planned| planned.case.column.height);
+        let is_common = planned.iter().all(|planned| planned.case.column.height == height);
+        let plate_width = (scene.load == LoadKind::Pushed).then_some(column.footing.width);
+        Self { scene, references, planned, height: is_common.then_some(height), plate_width }
+    }
+}
+
 impl Checker<'_> {
     /// What a series must do.
     pub(super) fn expectation(
@@ -49,7 +66,7 @@ impl Checker<'_> {
         table: &Placed<ExpectTable>,
         subject: &Subject<'_>,
     ) -> Option<SeriesExpectation> {
-        let before = self.diagnostics.len();
+        let before = self.complaints.len();
         // Whatever is wrong is told at once, and then nothing is made of it.
         let measured = self.measured(table.quantity, table.sample.as_ref(), table.norm.as_ref());
         let own_word = table.reference.as_deref().map(String::as_str);
@@ -115,7 +132,7 @@ impl Checker<'_> {
             tier: table.tier,
             line: self.line_of(table),
         };
-        (self.diagnostics.len() == before).then_some(expectation)
+        (self.complaints.len() == before).then_some(expectation)
     }
 
     /// What single cases must do.
@@ -124,7 +141,7 @@ impl Checker<'_> {
         table: &Placed<ExpectCaseTable>,
         subject: &Subject<'_>,
     ) -> Option<CaseExpectation> {
-        let before = self.diagnostics.len();
+        let before = self.complaints.len();
         let names: Vec<&str> = ["ok", UNSOUND].into_iter().chain(FailureKind::NAMES).collect();
         let status = table
             .status
@@ -159,7 +176,7 @@ impl Checker<'_> {
             peak_pressure: self.bounds(&table.peak_pressure),
             error,
         };
-        if demand == CaseDemand::default() && self.diagnostics.len() == before {
+        if demand == CaseDemand::default() && self.complaints.len() == before {
             self.complain(
                 table.span(),
                 "the expectation demands nothing",
@@ -174,7 +191,7 @@ impl Checker<'_> {
         }
         let line = self.line_of(table);
         let expectation = CaseExpectation { selection, demand, tier: table.tier, line };
-        (self.diagnostics.len() == before).then_some(expectation)
+        (self.complaints.len() == before).then_some(expectation)
     }
 
     /// Line of a block, for messages.
@@ -190,7 +207,7 @@ impl Checker<'_> {
             _ => None,
         });
         let height = named.or(common);
-        if height.is_none() && self.diagnostics.is_empty() {
+        if height.is_none() && self.complaints.is_empty() {
             self.complain(
                 place,
                 "the cases have several heights, and the expectation names none",
@@ -312,7 +329,7 @@ impl Checker<'_> {
                 "it is measured at \"points\", \"centres\" or \"nodes\", in the norm \"l1\", \"l2\" or \"linf\"",
             )
         };
-        let before = self.diagnostics.len();
+        let before = self.complaints.len();
         if let Some(typed) = sample.filter(|typed| (***typed == Sample::Surface) != is_settlement) {
             self.complain(typed.span(), format!("{subject} has no `sample = \"{}\"`", typed.name()), help);
         }
@@ -320,7 +337,7 @@ impl Checker<'_> {
             self.complain(typed.span(), format!("{subject} has no `norm = \"{}\"`", typed.name()), help);
         }
         let measured = (sample.map_or(usual.0, |typed| **typed), norm.map_or(usual.1, |typed| **typed));
-        (self.diagnostics.len() == before).then_some(measured)
+        (self.complaints.len() == before).then_some(measured)
     }
 
     /// The reference of an expectation: the one that it names; else the first that the runs are compared with, which is
@@ -514,7 +531,7 @@ impl Checker<'_> {
         place: Range<usize>,
         planned: &'a [PlannedCase],
     ) -> Option<Vec<&'a Case>> {
-        if !self.diagnostics.is_empty() || self.purpose != Purpose::Solving {
+        if !self.complaints.is_empty() || self.purpose != Purpose::Solving {
             return None;
         }
         let mut cases: Vec<&Case> = planned.iter().map(|planned| &planned.case).collect();
@@ -542,7 +559,8 @@ impl Checker<'_> {
         if !cases.iter().any(is_kept) {
             let factors =
                 listed(cases.iter().flat_map(|case| case.time_factors.iter()).map(ToString::to_string));
-            self.complain(
+            self.complain_by(
+                Basis::Times,
                 place,
                 format!("no case has an output at T_v = {time_factor}"),
                 format!("the outputs are at {factors}: name one of them, or add it to `output.time_factors`"),

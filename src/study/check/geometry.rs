@@ -3,9 +3,9 @@
 use crate::case::{Case, Key, PlannedCase, Task, Value};
 use crate::study::check::{Checker, Purpose};
 use crate::study::diagnostic::Diagnostic;
-use crate::study::file::StudyFile;
+use crate::study::file::{InputTable, StudyFile};
 use crate::study::inputs::{Inputs, TypedInput};
-use crate::study::reading::Placed;
+use crate::study::reading::{Placed, Typed};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
@@ -33,6 +33,9 @@ const LEAST_WAVE_SPEED: f64 = 0.9;
 /// Share by which a strain may miss the one that its load was made of.
 const ROUND_OFF: f64 = 1e-12;
 
+/// Problems that a complaint lists.
+const MOST_LISTED: usize = 4;
+
 /// Share of the load by which the base of a column may change the pressures of a front in a half-space.
 const MOST_FELT_OF_BASE: f64 = 1e-2;
 
@@ -58,109 +61,94 @@ const UNIT_MISTAKES: [(&str, Range<f64>, &str, &str); 3] = [
     ),
 ];
 
-/// What belongs in the table of a kind of body.
-fn contents_of(table: &str) -> &'static str {
-    match table {
-        "layer" => "its geometry and load are in [layer]: length, height, base, load",
-        "manufactured" => {
-            "its body is the unit square with points on the regular lattice; [manufactured] holds its amplitudes, \
-             frequency and pressure"
-        }
-        _ => "its geometry and load are in [column]: height, width, load, dimensions",
+/// What is said of a key or table that a problem does not have: which problems have it, or what this one has instead.
+fn elsewhere(key: &str, scene: &Scene) -> String {
+    let takers: Vec<String> = SCENES.into_iter().filter(|other| other.takes(key)).map(quoted).collect();
+    match takers.as_slice() {
+        [] => contents_of(scene),
+        takers if takers.len() > MOST_LISTED => contents_of(scene),
+        [only] => format!("it belongs to the problem {only}"),
+        [others @ .., last] => format!("it belongs to the problems {} and {last}", others.join(", ")),
     }
+}
+
+fn quoted(scene: &Scene) -> String {
+    format!("\"{}\"", scene.name)
+}
+
+/// What belongs in the table of a problem's geometry.
+fn contents_of(scene: &Scene) -> String {
+    let table = scene.body.table();
+    let keys: Vec<&str> = Key::in_table(table).map(|key| key.name).filter(|key| scene.takes(key)).collect();
+    format!("the geometry and load of `{}` are in [{table}]: {}", scene.name, keys.join(", "))
 }
 
 impl Checker<'_> {
     /// The inputs of the table that the scene's geometry stands in; other tables of geometry are refused.
     pub(super) fn geometry(&mut self, file: &StudyFile, seed: &Case) -> Vec<(&'static Key, Value)> {
-        let (scene, table_of_problem) = (seed.scene, seed.scene.body.table());
-        let [layer, manufactured] = [&file.layer, &file.manufactured];
-        let of_column = file.column.inputs.first_span();
+        let (scene, own) = (seed.scene, seed.scene.body.table());
+        let of_table = |table: &Typed<InputTable>| table.as_ref().map(Placed::span);
         let strain = file.column.strain.as_ref().map(Placed::span).filter(|_| scene.body == Body::Square);
-        let on_lattice = !scene.takes("points");
-        let of_points = file.points.inputs.first_span().filter(|_| on_lattice);
+        let of_points = file.points.inputs.first_span().filter(|_| !scene.takes("points"));
         for (table, place) in [
-            ("column", of_column.or(strain)),
-            ("layer", layer.as_ref().map(Placed::span)),
-            ("manufactured", manufactured.as_ref().map(Placed::span)),
+            ("column", file.column.inputs.first_span().or(strain)),
+            ("layer", of_table(&file.layer)),
+            ("manufactured", of_table(&file.manufactured)),
             ("points", of_points),
         ] {
-            if let Some(place) = place.filter(|_| table != table_of_problem) {
-                self.complain(
-                    place,
-                    format!("the problem `{}` has no [{table}]", scene.name),
-                    contents_of(table_of_problem),
-                );
+            if let Some(place) = place.filter(|_| table != own) {
+                let message = format!("the problem `{}` has no [{table}]", scene.name);
+                self.complain(place, message, contents_of(scene));
             }
         }
-        match table_of_problem {
-            "layer" => layer.as_ref().map_or(Vec::new(), |table| {
-                for (key, typed) in &table.inputs.0 {
-                    self.footing_fits(key, typed.span(), scene);
-                }
-                self.inputs(table_of_problem, &table.inputs, seed)
-            }),
-            "manufactured" => manufactured.as_ref().map_or(Vec::new(), |table| {
-                for (key, typed) in &table.inputs.0 {
-                    self.amplitude_fits(key, typed.span(), scene);
-                }
-                self.inputs(table_of_problem, &table.inputs, seed)
-            }),
-            _ => self.column(&file.column.inputs, seed),
+        let inputs = match own {
+            "layer" => file.layer.as_ref().map(|table| &table.inputs),
+            "manufactured" => file.manufactured.as_ref().map(|table| &table.inputs),
+            _ => Some(&file.column.inputs),
+        };
+        self.problem_takes(&file.material.inputs, scene);
+        let Some(inputs) = inputs else { return Vec::new() };
+        self.problem_takes(inputs, scene);
+        self.column_is_possible(inputs, seed);
+        self.inputs(own, inputs, seed)
+    }
+
+    /// Complains of each key that other problems have and this one has not: of its geometry, its history and its points.
+    pub(super) fn problem_takes(&mut self, inputs: &Inputs, scene: &Scene) {
+        for (key, typed) in &inputs.0 {
+            let name = if key.tables.contains(&"points") { "points" } else { key.name };
+            let is_of_problems = SCENES.into_iter().any(|other| other.takes(name));
+            if is_of_problems && !scene.takes(name) {
+                let message = format!("the problem `{}` has no `{}`", scene.name, key.name);
+                self.complain(typed.span(), message, elsewhere(name, scene));
+            }
         }
     }
 
-    /// The inputs of `[column]`, where the scene takes them.
-    fn column(&mut self, inputs: &Inputs, seed: &Case) -> Vec<(&'static Key, Value)> {
-        let (scene, name) = (seed.scene, seed.scene.name);
+    /// Complains of values of `[column]` that the problem or its task cannot have.
+    fn column_is_possible(&mut self, inputs: &Inputs, seed: &Case) {
         let is =
             |key: &str, wanted: fn(&TypedInput) -> bool| inputs.typed(key).is_some_and(|typed| wanted(typed));
         for (key, is_refused, message, help) in [
             (
-                "loading_time",
-                !scene.takes("loading_time"),
-                format!("the load of `{name}` acts at once"),
-                "a load that grows belongs to the problems \"xie-leo\" and \"dynamic-column\"",
-            ),
-            (
-                "self_weight",
-                !scene.takes("self_weight"),
-                format!("the soil of `{name}` has no weight"),
-                "self-weight belongs to the problems \"terzaghi\", \"xie-leo\", \"dynamic-column\" and \"at-rest\"",
-            ),
-            (
                 "self_weight",
                 seed.task == Task::Stability
-                    && scene.takes("self_weight")
                     && is("self_weight", |typed| matches!(typed, TypedInput::Flag(true))),
                 "a weight does not change the critical step: it is that of the weightless column".to_owned(),
                 "leave `self_weight` out of a study of stability",
             ),
             (
-                "drainage",
-                !scene.takes("drainage"),
-                format!("the base of `{name}` is impermeable"),
-                "a column drained at both ends belongs to the problems \"terzaghi\", \"xie-leo\" and \"layered\"",
-            ),
-            (
-                "initial_stress",
-                !scene.takes("initial_stress"),
-                format!("the soil of `{name}` has no stress history"),
-                "an initial stress belongs to the problem \"yield-front\"",
-            ),
-            (
                 "dimensions",
-                scene.body != Body::Column
+                seed.scene.body != Body::Column
                     && is("dimensions", |typed| !matches!(typed, TypedInput::Count(2))),
-                format!("`{name}` has two dimensions"),
+                format!("`{}` has two dimensions", seed.scene.name),
                 "leave the key out: the plate presses across the direction in which the water flows",
             ),
         ] {
-            if let Some(place) = inputs.span(key).filter(|_| is_refused) {
+            if let Some(place) = inputs.span(key).filter(|_| is_refused && seed.scene.takes(key)) {
                 self.complain(place, message, help);
             }
         }
-        self.inputs("column", inputs, seed)
     }
 
     /// The layers of `[[column.soils]]`, where the scene takes them; a sweep may still give their soils what they do not
@@ -186,7 +174,7 @@ impl Checker<'_> {
             self.complain(
                 whole,
                 format!("the soil of the problem `{}` has no layers", base.scene.name),
-                "layers belong to the problems \"layered\", of small strain, and \"xie-leo\", of large",
+                elsewhere("soils", base.scene),
             );
             return SoilLayers::default();
         }
@@ -210,59 +198,6 @@ impl Checker<'_> {
             self.complain(whole, error.to_string(), help);
         }
         layers
-    }
-
-    /// Complains of a footing's inputs where there is none, and of a load where one is pushed.
-    fn footing_fits(&mut self, key: &Key, place: Range<usize>, scene: &'static Scene) {
-        let takes_plate = scene.takes("plate_width");
-        let message = || format!("the problem `{}` has no `{}`", scene.name, key.name);
-        if takes_plate && key.name == "load" {
-            self.complain(
-                place,
-                message(),
-                "the settlement of its plate is prescribed, and the load is the result",
-            );
-        } else if !takes_plate && ["plate_width", "plate", "undrained"].contains(&key.name) {
-            self.complain(place, message(), "a plate belongs to the problem \"footing\"");
-        }
-    }
-
-    /// Complains where a motion has no such amplitude.
-    fn amplitude_fits(&mut self, key: &Key, place: Range<usize>, scene: &'static Scene) {
-        if let Some(why) = scene.refuses_amplitude(key.name) {
-            self.complain(place, format!("the problem `{}` has no `{}`", scene.name, key.name), why);
-        }
-    }
-
-    /// Complains where a sweep names an input of another kind of body: the width of a layer, the base of a column.
-    pub(super) fn swept_geometry(&mut self, inputs: &Inputs, scene: &'static Scene) {
-        let own = scene.body.table();
-        for (key, list) in &inputs.0 {
-            self.amplitude_fits(key, list.span(), scene);
-            self.footing_fits(key, list.span(), scene);
-            let takes = |table: &str| key.tables.contains(&table);
-            let is_geometry = ["column", "layer", "manufactured"].into_iter().any(takes);
-            if (scene.body == Body::Square && takes("points")) || (is_geometry && !takes(own)) {
-                let message = format!("the problem `{}` has no `{}`", scene.name, key.name);
-                self.complain(list.span(), message, contents_of(own));
-            }
-        }
-    }
-
-    /// Complains of what a soil remembers where the scene's does not.
-    pub(super) fn soil_remembers(&mut self, material: &Inputs, scene: &'static Scene) {
-        for key in ["reload_modulus", "preconsolidation", "undrained_strength"] {
-            if let Some(place) = material.span(key).filter(|_| !scene.takes(key)) {
-                let message = format!("`{key}` has no effect in the problem `{}`", scene.name);
-                let own =
-                    SCENES.into_iter().filter(|own| own.takes(key)).map(|own| format!("\"{}\"", own.name));
-                self.complain(
-                    place,
-                    message,
-                    format!("it belongs to the problem {}", own.collect::<Vec<_>>().join(" or ")),
-                );
-            }
-        }
     }
 
     /// Refuses values outside the range of any soil; where nothing is solved the problem may be dimensionless, and

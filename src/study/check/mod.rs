@@ -1,9 +1,9 @@
 //! Checks a study as typed, reports every mistake at its place, and plans its cases.
 
+mod doubts;
 mod expectations;
 mod geometry;
 pub mod outputs;
-mod repaired;
 pub mod solvers;
 mod sweeps;
 mod values;
@@ -12,6 +12,7 @@ use crate::case::contender::Contender;
 use crate::case::work_estimate::{READING_SECONDS, estimated_seconds};
 use crate::case::{Case, Key, PlannedCase, Planner, Task, Tier, Value};
 use crate::record::Record;
+use crate::study::check::doubts::{Basis, Complaint, Doubts};
 use crate::study::check::expectations::Subject;
 use crate::study::check::geometry::load_of;
 use crate::study::check::outputs::Outputs;
@@ -23,6 +24,7 @@ use crate::study::reading::Placed;
 use crate::study::shipped::name_of;
 use crate::study::solver::ExternalSolver;
 use oedometer_exact::reference::ReferenceKind;
+use oedometer_foreign::mending::{Rest, Unread};
 use oedometer_problem::integrator::Formulation;
 use oedometer_problem::method::Configuration;
 use oedometer_scenes::Scene;
@@ -98,27 +100,35 @@ impl Study {
     /// # Errors
     /// Every complaint with its place.
     pub fn check_for(source: &StudySource, purpose: Purpose) -> Result<Self, StudyError> {
-        if let Err(error) = StudyFile::read(source) {
-            return Err(repaired::with_later_mistakes(error, purpose));
-        }
-        Self::check_read(source, purpose)
-    }
-
-    /// Checks a study that can be read.
-    fn check_read(source: &StudySource, purpose: Purpose) -> Result<Self, StudyError> {
-        let file = StudyFile::read(source)?;
-        let mut checker = Checker {
-            source,
-            diagnostics: Vec::new(),
-            multiplied_out: 0,
-            purpose,
-            solvers: Vec::new(),
-            is_race: false,
-            not_applicable: Vec::new(),
-            warnings: Vec::new(),
+        let checked = |file: StudyFile| {
+            let mut checker = Checker {
+                source,
+                complaints: Vec::new(),
+                multiplied_out: 0,
+                purpose,
+                solvers: Vec::new(),
+                is_race: false,
+                not_applicable: Vec::new(),
+                warnings: Vec::new(),
+            };
+            (checker.study(file), checker.complaints)
         };
-        let study = checker.study(file);
-        if checker.diagnostics.is_empty() { Ok(study) } else { Err(source.error(checker.diagnostics)) }
+        match StudyFile::read(source) {
+            Ok(file) => match checked(file) {
+                (study, complaints) if complaints.is_empty() => Ok(study),
+                (_, complaints) => {
+                    Err(source.error(complaints.into_iter().map(|complaint| complaint.diagnostic).collect()))
+                }
+            },
+            Err(unread) => {
+                let Unread { mut error, rest } = *unread;
+                if let Some(Rest { read, places, left_out }) = rest {
+                    let doubts = Doubts { text: &source.text, places, left_out };
+                    error.diagnostics.extend(doubts.sure(checked(read).1));
+                }
+                Err(error)
+            }
+        }
     }
 
     /// Whether a case would start a program that may not be started.
@@ -157,7 +167,7 @@ impl Study {
 /// Complaints as they come up; every method gives a usable value or none.
 struct Checker<'a> {
     source: &'a StudySource,
-    diagnostics: Vec<Diagnostic>,
+    complaints: Vec<Complaint>,
     /// Cases that the sweeps seen so far multiply out to.
     multiplied_out: usize,
     purpose: Purpose,
@@ -177,23 +187,43 @@ struct Common {
     seed: Case,
     /// What the study gives by its own tables.
     given: Vec<(&'static Key, Value)>,
+    /// A case of the study before anything is swept.
+    base: Case,
+    /// The strain that it gives in place of a load.
+    strain: Option<f64>,
 }
 
 impl Common {
-    /// A case of the study before anything is swept.
-    fn base(&self) -> Case {
-        let mut case = self.seed.clone();
-        for (key, value) in &self.given {
-            key.set(&mut case, *value);
+    /// A case of a sweep with what follows from its inputs: its points of water, its load and its outputs.
+    fn complete(&self, case: Case, outputs: &Outputs) -> Case {
+        let mut case = case.as_its_solver_knows();
+        case.column.points.name_water_points(case.points_per_cell);
+        if let Some(strain) = self.strain {
+            case.column.load = load_of(strain, &case);
+        } else if case.scene.load == LoadKind::Pushed {
+            // What the soil bears is what pressures are measured by.
+            case.column.load = case.material.undrained_strength;
         }
+        case.time_factors = outputs.of_case(&case);
         case
     }
 }
 
 impl Checker<'_> {
-    /// Notes a complaint.
+    /// Notes a complaint that rests on the values of its block and those before it.
     fn complain(&mut self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) {
-        self.diagnostics.push(Diagnostic::at(span, message, help));
+        self.complain_by(Basis::Values, span, message, help);
+    }
+
+    /// Notes a complaint, with what it rests on.
+    fn complain_by(
+        &mut self,
+        basis: Basis,
+        span: Range<usize>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        self.complaints.push(Complaint { diagnostic: Diagnostic::at(span, message, help), basis });
     }
 
     /// Notes a warning, with which the study still runs.
@@ -205,55 +235,18 @@ impl Checker<'_> {
         let (scene, task) = (*file.scene, file.task.as_deref().copied().unwrap_or_default());
         let case_seconds =
             self.positive(file.case_seconds.as_ref(), "case_seconds", "s", DEFAULT_CASE_SECONDS);
-        if let Some(typed) = file.task.as_ref().filter(|_| task == Task::Stability && scene.motion.is_some())
-        {
-            self.complain(
-                typed.span(),
-                "the body forces of a manufactured solution hide what grows by itself: its critical step is predicted and \
-                 not observed",
-                "leave `task` out, or take another problem",
-            );
-        }
+        self.task_fits(&file, task);
         self.attach_solvers(&file, case_seconds);
         self.given_once(&file);
         let common = self.common(&file, Case::seed(task, scene));
-        let mut base = common.base();
-        let strain = self.given_strain(&file, &base);
-        if let Some(strain) = strain {
-            base.column.load = load_of(strain, &base);
-        }
-        base.column.soils = self.soils(&file, &base);
-        let has_dates = file.output.times.is_some() || file.sweep.iter().any(|table| table.times.is_some());
         let outputs = self.outputs(&file.output.time_factors, &file.output.times);
-        let outputs =
-            outputs.unwrap_or_else(|| Outputs::at_factors((scene.outputs)(&base.column, &base.material)));
-        let references = self.references(&file.output, scene, &base.column);
-        let given = self.attach_results(&file);
-        self.has_cases(&file);
-        let mut planner = Planner::default();
-        for table in &file.sweep {
-            self.plan(&file, table, (&common, &base, strain), &outputs, &mut planner);
-        }
-        base.time_factors = outputs.of_case(&base);
-        if !given.is_empty() {
-            self.times_are_possible(&outputs, std::iter::once(base.clone()));
-        }
-        for meshes in given {
-            for case in meshes.cases(&base) {
-                planner.put(case, meshes.tier);
-            }
-        }
-        let mut planned = planner.into_cases();
-        tell_apart(&mut planned);
-        self.units_are_meant(&file, &planned);
-        self.large_for_small_strain(&file, &planned);
-        self.unlike_any_soil(&file, &planned);
-        self.projection_slows_waves(&file, &planned);
-        let height = planned.first().map_or(base.column.height, |planned| planned.case.column.height);
-        let is_common = planned.iter().all(|planned| planned.case.column.height == height);
-        let height = is_common.then_some(height);
-        let plate_width = (scene.load == LoadKind::Pushed).then_some(base.column.footing.width);
-        let subject = Subject { scene, references: &references, planned: &planned, height, plate_width };
+        let outputs = outputs.unwrap_or_else(|| {
+            Outputs::at_factors((scene.outputs)(&common.base.column, &common.base.material))
+        });
+        let references = self.references(&file.output, scene, &common.base.column);
+        let planned = self.planned(&file, &common, &outputs);
+        self.warn_of_unusual(&file, &planned);
+        let subject = Subject::of(scene, &references, &planned, &common.base.column);
         let expectations: Vec<SeriesExpectation> =
             file.expect.iter().filter_map(|table| self.expectation(table, &subject)).collect();
         let case_expectations: Vec<CaseExpectation> =
@@ -272,7 +265,7 @@ impl Checker<'_> {
             case_seconds,
             solvers: std::mem::take(&mut self.solvers),
             may_start_solvers: false,
-            has_dates,
+            has_dates: file.output.times.is_some() || file.sweep.iter().any(|table| table.times.is_some()),
             timing_repeats: timing_repeats.unwrap_or(0),
             golden,
             is_race: self.is_race,
@@ -281,68 +274,93 @@ impl Checker<'_> {
         }
     }
 
-    /// Complains of a study without cases.
-    fn has_cases(&mut self, file: &StudyFile) {
-        if !file.sweep.is_empty() || !file.result.is_empty() {
-            return;
+    /// Complains of a search for the critical step where the motion is prescribed.
+    fn task_fits(&mut self, file: &StudyFile, task: Task) {
+        let is_prescribed = task == Task::Stability && file.scene.motion.is_some();
+        if let Some(typed) = file.task.as_ref().filter(|_| is_prescribed) {
+            self.complain(
+                typed.span(),
+                "the body forces of a manufactured solution hide what grows by itself: its critical step is predicted and \
+                 not observed",
+                "leave `task` out, or take another problem",
+            );
         }
-        let end = self.source.text.trim_end().len();
-        let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
-        self.complain(
-            last_line..end,
-            "the study ends here without a [[sweep]] block",
-            "add one with at least `method` and `cells`",
-        );
     }
 
-    /// Plans the cases of a sweep, with the load of a strain that is given, at its own outputs or those of the study.
-    fn plan(
+    /// The cases of all sweeps and of all attached results, in the order of the file.
+    fn planned(&mut self, file: &StudyFile, common: &Common, outputs: &Outputs) -> Vec<PlannedCase> {
+        let given = self.attach_results(file);
+        if file.sweep.is_empty() && file.result.is_empty() {
+            let end = self.source.text.trim_end().len();
+            let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
+            self.complain(
+                last_line..end,
+                "the study ends here without a [[sweep]] block",
+                "add one with at least `method` and `cells`",
+            );
+        }
+        let mut planner = Planner::default();
+        for table in &file.sweep {
+            let swept = self.outputs(&table.time_factors, &table.times);
+            let outputs = swept.as_ref().unwrap_or(outputs);
+            self.for_each_entry(table, |checker, entry| {
+                checker.plan_block(file, table, (common, outputs), entry, &mut planner);
+            });
+        }
+        let base = Case { time_factors: outputs.of_case(&common.base), ..common.base.clone() };
+        if !given.is_empty() {
+            self.times_are_possible(outputs, std::iter::once(base.clone()));
+        }
+        for meshes in given {
+            for case in meshes.cases(&base) {
+                planner.put(case, meshes.tier);
+            }
+        }
+        let mut planned = planner.into_cases();
+        tell_apart(&mut planned);
+        planned
+    }
+
+    /// Plans the cases of a sweep, with the methods of an entry where it is a race.
+    fn plan_block(
         &mut self,
         file: &StudyFile,
         table: &Placed<SweepTable>,
-        (common, base, strain): (&Common, &Case, Option<f64>),
-        outputs: &Outputs,
+        (common, outputs): (&Common, &Outputs),
+        entry: Option<&Contender>,
         planner: &mut Planner,
     ) {
-        let (start, scene) = (start_of(table), base.scene);
-        let swept = self.outputs(&table.time_factors, &table.times);
-        let outputs = swept.as_ref().unwrap_or(outputs);
-        let loaded = |case: Case| {
-            let mut case = case.as_its_solver_knows();
-            case.column.points.name_water_points(case.points_per_cell);
-            if let Some(strain) = strain {
-                case.column.load = load_of(strain, &case);
-            } else if scene.load == LoadKind::Pushed {
-                // What the soil bears is what pressures are measured by.
-                case.column.load = case.material.undrained_strength;
-            }
-            case.time_factors = outputs.of_case(&case);
-            case
-        };
-        self.for_each_entry(table, |checker, entry| {
-            // Where nothing moves a mesh that follows the soil is the same mesh.
-            let moves = scene.configuration() == Configuration::Updated || base.task == Task::Stability;
-            if entry.is_some_and(Contender::is_total) && !moves && scene.question != Question::Rest {
-                return;
-            }
-            let before = checker.diagnostics.len();
-            let Some(mut sweep) = checker.sweep(table, &start, common, base, entry) else { return };
-            checker.default_integrator((table, &start), common, (base, &loaded), &mut sweep);
-            let unfit =
-                |entry: &Contender| sweep.cases(base).map(&loaded).find_map(|case| entry.unfit(&case));
-            if let Some((entry, why)) = entry.and_then(|entry| Some((entry, unfit(entry)?))) {
-                checker.leave_out(entry.name, why);
-                return;
-            }
-            checker.times_are_possible(outputs, sweep.cases(base).map(&loaded));
-            checker.cases_are_possible(file, (table, &start), sweep.cases(base).map(&loaded));
-            // What cannot be fails the study, or is left out of a race.
-            let is_kept = entry.is_none() || checker.diagnostics.len() == before;
-            planner.reserve(sweep.count().unwrap_or(0));
-            for case in sweep.cases(base).map(&loaded).filter(|_| is_kept) {
-                planner.put(case, table.tier);
-            }
-        });
+        let Case { scene, task, .. } = common.base;
+        // Where nothing moves a mesh that follows the soil is the same mesh.
+        let moves = scene.configuration() == Configuration::Updated || task == Task::Stability;
+        if entry.is_some_and(Contender::is_total) && !moves && scene.question != Question::Rest {
+            return;
+        }
+        let (start, before) = (start_of(table), self.complaints.len());
+        let Some(mut sweep) = self.sweep(table, &start, common, entry) else { return };
+        let complete = |case: Case| common.complete(case, outputs);
+        self.default_integrator((table, &start), common, &complete, &mut sweep);
+        let cases = || sweep.cases(&common.base).map(complete);
+        let unfit = entry.and_then(|entry| Some((entry, cases().find_map(|case| entry.unfit(&case))?)));
+        if let Some((entry, why)) = unfit {
+            self.leave_out(entry.name, why);
+            return;
+        }
+        self.times_are_possible(outputs, cases());
+        self.cases_are_possible(file, (table, &start), cases());
+        planner.reserve(sweep.count().unwrap_or(0));
+        // What cannot be fails the study, or is left out of a race.
+        if entry.is_none() || self.complaints.len() == before {
+            cases().for_each(|case| planner.put(case, table.tier));
+        }
+    }
+
+    /// Warns of inputs that are likely to be meant otherwise.
+    fn warn_of_unusual(&mut self, file: &StudyFile, planned: &[PlannedCase]) {
+        self.units_are_meant(file, planned);
+        self.large_for_small_strain(file, planned);
+        self.unlike_any_soil(file, planned);
+        self.projection_slows_waves(file, planned);
     }
 
     /// Whether there are golden values: what expects nothing is judged by them, and a wide tolerance judges nothing.
@@ -357,7 +375,7 @@ impl Checker<'_> {
         let expects = !expectations.is_empty() || !case_expectations.is_empty();
         match rule {
             // An expectation with a mistake in it has its own complaint.
-            GoldenRule::None if !expects && self.diagnostics.is_empty() => self.complain(
+            GoldenRule::None if !expects && self.complaints.is_empty() => self.complain(
                 typed.span(),
                 "nothing would be judged: the study has neither golden values nor expectations",
                 "add an `[[expect]]`, or leave `golden` out",
@@ -378,7 +396,6 @@ impl Checker<'_> {
         given.extend(self.inputs("points", &file.points.inputs, &seed));
         given.extend(self.inputs("material", &file.material.inputs, &seed));
         self.units_are_si(&file.material.inputs);
-        self.soil_remembers(&file.material.inputs, seed.scene);
         given.extend(self.inputs("integrator", &file.integrator.inputs, &seed));
         if !seed.scene.formulations.has(&Formulation::QuasiStatic)
             && file.integrator.inputs.typed("formulation").is_none()
@@ -386,7 +403,16 @@ impl Checker<'_> {
             let waves = Value::Word(Formulation::VW.name());
             given.extend(Key::named("formulation", "integrator").map(|key| (key, waves)));
         }
-        Common { seed, given }
+        let mut base = seed.clone();
+        for (key, value) in &given {
+            key.set(&mut base, *value);
+        }
+        let strain = self.given_strain(file, &base);
+        if let Some(strain) = strain {
+            base.column.load = load_of(strain, &base);
+        }
+        base.column.soils = self.soils(file, &base);
+        Common { seed, given, base, strain }
     }
 
     /// The references that runs are compared with, in the order of the scene, whose own comes first.

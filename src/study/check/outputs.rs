@@ -3,6 +3,7 @@
 use crate::case::complete_states::SAME_TIME;
 use crate::case::{Case, PlannedCase, Shared};
 use crate::study::check::Checker;
+use crate::study::check::doubts::Basis;
 use crate::study::expectation::Selection;
 use crate::study::reading::{Placed, Typed};
 use oedometer_soil::wording::{clock_time, count_of, duration, typed};
@@ -161,7 +162,7 @@ impl Checker<'_> {
             (None, Some(time)) => time,
             (None, None) => {
                 let help = "add `time_factor = 0.1`, or a time like `time = \"30 days\"`";
-                self.complain(place, "the expectation names no time factor", help);
+                self.complain_by(Basis::Lack("time"), place, "the expectation names no time factor", help);
                 return None;
             }
             (Some(_), Some(time)) => {
@@ -181,7 +182,8 @@ impl Checker<'_> {
             // That no case is named has a complaint of its own.
             [] => Some(f64::NAN),
             [first, .., last] => {
-                self.complain(
+                self.complain_by(
+                    Basis::Times,
                     time.span(),
                     format!(
                         "{} s is T_v = {first:.3e} to {last:.3e} in the cases of this expectation",

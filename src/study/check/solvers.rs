@@ -88,7 +88,7 @@ impl Checker<'_> {
     }
 
     fn solver(&mut self, table: &SolverTable, case_seconds: f64) -> Option<ExternalSolver> {
-        let before = self.diagnostics.len();
+        let before = self.complaints.len();
         let command = words_of(&table.command);
         if command.is_empty() {
             let help = "write the program and its arguments, like [\"python3\", \"adapter.py\", \"{case}\", \"{out}\"]";
@@ -117,7 +117,7 @@ impl Checker<'_> {
             table.time_step.as_ref().map(|typed| self.positive(Some(typed), "time_step", "s", 1.0));
         let known_by = self.known_by(table, &folder);
         let identity = self.identity(&table.name, "solver", &digest_of_solver(table, &folder))?;
-        (self.diagnostics.len() == before).then(|| ExternalSolver {
+        (self.complaints.len() == before).then(|| ExternalSolver {
             identity,
             folder,
             command,
@@ -139,7 +139,7 @@ impl Checker<'_> {
     }
 
     fn given_result(&mut self, table: &ResultTable) -> Option<GivenMeshes> {
-        let before = self.diagnostics.len();
+        let before = self.complaints.len();
         let cells: Vec<usize> =
             table.cells.iter().filter_map(|typed| self.count(Some(typed), "cells", 1..=MOST_CELLS)).collect();
         let files = words_of(&table.files);
@@ -181,7 +181,7 @@ impl Checker<'_> {
         let mapping = self.file_of_study(table.mapping.as_ref(), &folder);
         let digest = digest_of_result(table, &files, &cells, &folder);
         let identity = self.identity(&table.name, "result", &digest)?;
-        if self.diagnostics.len() > before {
+        if self.complaints.len() > before {
             return None;
         }
         self.solvers.push(ExternalSolver {

@@ -5,6 +5,7 @@ use crate::case::contender::{CONTENDERS, Contender, RACE};
 use crate::case::work_estimate::estimated_seconds;
 use crate::case::{Case, Key, PlannedCase, Task, Value};
 use crate::study::Purpose;
+use crate::study::check::doubts::{Basis, Complaint};
 use crate::study::check::{Checker, Common};
 use crate::study::diagnostic::Diagnostic;
 use crate::study::file::{COMMAND_LINE, StudyFile, SweepTable};
@@ -40,21 +41,21 @@ impl Checker<'_> {
             return;
         }
         self.is_race = true;
-        let before = self.diagnostics.len();
-        let mut refused: Vec<(&'static str, Vec<Diagnostic>)> = Vec::new();
+        let before = self.complaints.len();
+        let mut refused: Vec<(&'static str, Vec<Complaint>)> = Vec::new();
         for contender in CONTENDERS.iter() {
             check(self, Some(contender));
-            let complaints = self.diagnostics.split_off(before);
+            let complaints = self.complaints.split_off(before);
             if !complaints.is_empty() {
                 refused.push((contender.name, complaints));
             }
         }
         if refused.len() == CONTENDERS.len() {
-            self.diagnostics.extend(refused.swap_remove(0).1);
+            self.complaints.extend(refused.swap_remove(0).1);
             return;
         }
         for (name, complaints) in refused {
-            self.leave_out(name, complaints[0].message.split(": a case").next().unwrap_or_default());
+            self.leave_out(name, complaints[0].diagnostic.message.split(": a case").next().unwrap_or_default());
         }
     }
 
@@ -71,14 +72,14 @@ impl Checker<'_> {
         table: &SweepTable,
         start: &Range<usize>,
         common: &Common,
-        base: &Case,
         entry: Option<&Contender>,
     ) -> Option<Sweep> {
-        let before = self.diagnostics.len();
+        let scene = common.base.scene;
+        let before = self.complaints.len();
         for (name, example) in [("method", "[\"GC-SRI-patch\"]"), ("cells", "[5, 10, 20]")] {
             if table.inputs.typed(name).is_none() {
                 let message = format!("the sweep names no {name}");
-                self.complain(start.clone(), message, format!("add `{name} = {example}`"));
+                self.complain_by(Basis::Lack(name), start.clone(), message, format!("add `{name} = {example}`"));
             }
         }
         let mut keys = Vec::new();
@@ -88,7 +89,7 @@ impl Checker<'_> {
             {
                 let place = table.inputs.span(key.name).unwrap_or(start.clone());
                 keys.extend(
-                    self.entered(value, place, base.scene).map(|value| SweptKey { key, values: vec![value] }),
+                    self.entered(value, place, scene).map(|value| SweptKey { key, values: vec![value] }),
                 );
             } else if let Some(typed) = table.inputs.typed(key.name) {
                 self.is_filled(key.name, typed.span(), table.inputs.list(key.name).len());
@@ -100,7 +101,7 @@ impl Checker<'_> {
                 keys.push(SweptKey { key, values: vec![*value] });
             }
         }
-        self.swept_geometry(&table.inputs, base.scene);
+        self.problem_takes(&table.inputs, scene);
         let names: Vec<&str> = Key::in_table("sweep").map(|key| key.name).collect();
         let mut path = Vec::new();
         if let Some(typed) = &table.path {
@@ -119,7 +120,7 @@ impl Checker<'_> {
                 "lists in `path` are combined element by element: give them equal lengths",
             );
         }
-        let is_sound = self.diagnostics.len() == before && self.can_be_multiplied_out(start, &sweep);
+        let is_sound = self.complaints.len() == before && self.can_be_multiplied_out(start, &sweep);
         is_sound.then_some(sweep)
     }
 
@@ -181,7 +182,7 @@ impl Checker<'_> {
                     self.complain(place(refusal.key).unwrap_or(start.clone()), refusal.why, refusal.help);
                 }
             }
-            if is_solved && has_end && self.diagnostics.is_empty() {
+            if is_solved && has_end && self.complaints.is_empty() {
                 has_end = !self.has_no_end(start, &of_load, &case);
             }
             if !is_solved || !case.has_integrator() {
@@ -229,7 +230,7 @@ impl Checker<'_> {
         &mut self,
         (table, start): (&SweepTable, &Range<usize>),
         common: &Common,
-        (base, complete): (&Case, &dyn Fn(Case) -> Case),
+        complete: &dyn Fn(Case) -> Case,
         sweep: &mut Sweep,
     ) {
         // Who says how steps are taken has chosen.
@@ -239,11 +240,12 @@ impl Checker<'_> {
                 table.inputs.typed(key.name).is_some()
                     || common.given.iter().any(|(given, _)| given.name == key.name)
             });
-        let Case { task, scene, .. } = *base;
+        let Case { task, scene, .. } = common.base;
         let key = Key::named("integrator", "sweep").filter(|_| task == Task::Solve && !scene.waves);
         let Some(key) = key.filter(|_| !is_chosen && self.purpose == Purpose::Solving) else { return };
         let slowest = |sweep: &Sweep| {
-            sweep.cases(base).map(|case| estimated_seconds(&complete(case))).fold(0.0, f64::max)
+            let cases = sweep.cases(&common.base);
+            cases.map(|case| estimated_seconds(&complete(case))).fold(0.0, f64::max)
         };
         let explicit = slowest(sweep);
         if explicit < LONGEST_BY_DEFAULT {

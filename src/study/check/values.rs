@@ -3,6 +3,7 @@
 use crate::case::keys::{KEYS, Range};
 use crate::case::{Case, Key, Kind, SolverName, Value};
 use crate::study::check::Checker;
+use crate::study::check::doubts::Basis;
 use crate::study::diagnostic::one_of;
 use crate::study::file::StudyFile;
 use crate::study::inputs::{Inputs, MethodTable, One, TimeStepTable, TypedInput};
@@ -247,7 +248,7 @@ impl Checker<'_> {
         let (count, place) = typed.map(|typed| (**typed, typed.span()))?;
         if !range.contains(&count) {
             let help = format!("it must lie between {} and {}", range.start(), range.end());
-            self.complain(place, format!("`{name}` is {count}"), help);
+            self.complain_by(Basis::Text, place, format!("`{name}` is {count}"), help);
             return None;
         }
         usize::try_from(count).ok()
@@ -297,7 +298,7 @@ impl Checker<'_> {
             }
         };
         if !fits {
-            self.complain(span, message.trim_end(), help.trim_end());
+            self.complain_by(Basis::Text, span, message.trim_end(), help.trim_end());
         }
         // A zero with a sign is the same zero.
         fits.then_some(value + 0.0)

@@ -68,7 +68,7 @@ fn what_a_motion_cannot_have_is_refused_in_sentences() {
         ),
         (
             &["xie-leo", "--integrator", "explicit", "--set", "integrator.affine=true"],
-            "the critical step with APIC is not predicted",
+            "the critical step with APIC or stress slopes is not predicted",
         ),
         (
             &["manufactured-box", "--method", "CPDI-SRI-patch", "--set", "integrator.stress_slopes=true"],
@@ -76,7 +76,7 @@ fn what_a_motion_cannot_have_is_refused_in_sentences() {
         ),
         (
             &["xie-leo", "--integrator", "explicit", "--set", "integrator.stress_slopes=true"],
-            "the critical step with stress slopes is not predicted",
+            "the critical step with APIC or stress slopes is not predicted",
         ),
         (&["manufactured-box", "--integrator", "semi-implicit"], "at times of their own"),
         (
