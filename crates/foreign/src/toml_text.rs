@@ -94,7 +94,7 @@ impl StudySource {
         read(root.clone()).or_else(|error| {
             let mut mistakes = Mistakes { text: &self.text, ..Mistakes::default() };
             mistakes.of_table(&schema_of::<T>(), root.get_ref(), 0..0, "");
-            let Mistakes { found, mends, unknown, is_unreadable, .. } = mistakes;
+            let Mistakes { found, mends, places, unknown, is_unreadable, .. } = mistakes;
             let in_block = |(place, key, home): (usize, String, Option<&'static str>)| {
                 let block = Block::at(root.get_ref(), place)?;
                 Some(match home {
@@ -103,7 +103,6 @@ impl StudySource {
                 })
             };
             let left_out = unknown.into_iter().filter_map(in_block).collect();
-            let places = found.iter().filter_map(|mistake| mistake.span.clone()).collect();
             let place = root.span();
             let mended = || read(Spanned::new(place, mends.of_table(root.into_inner())));
             match (found.is_empty(), is_unreadable) {
@@ -253,6 +252,8 @@ struct Mistakes<'a> {
     found: Vec<Diagnostic>,
     /// What becomes of wrong keys and values, and of words that are numbers with units: these in SI units.
     mends: Mends,
+    /// Places of the mistakes; of a key with its value.
+    places: Vec<Range<usize>>,
     /// Keys whose values are unknown: a place in their block, the name, and the table that they belong to if that is another.
     unknown: Vec<(usize, String, Option<&'static str>)>,
     /// Whether a whole block is wrong, without which nothing can be read.
@@ -266,6 +267,7 @@ impl Mistakes<'_> {
     /// Notes a mistake, and what becomes of the key or value at its place.
     fn note(&mut self, place: Range<usize>, message: String, help: impl Into<String>, mend: Mend) {
         self.found.push(Diagnostic::at(place.clone(), message, help));
+        self.places.push(place.clone());
         self.mends.0.push((place, mend));
     }
 
@@ -291,6 +293,7 @@ impl Mistakes<'_> {
             }
             let mend = meant.map_or(Mend::LeftOut, |meant| Mend::Renamed(meant.to_owned()));
             self.note(name.span(), message, unknown.help, mend);
+            self.places.push(value.span());
         }
         for name in schema["required"].as_array().into_iter().flatten().filter_map(Value::as_str) {
             if !table.contains_key(name) {

@@ -67,8 +67,8 @@ fn elsewhere(key: &str, scene: &Scene) -> String {
     match takers.as_slice() {
         [] => contents_of(scene),
         takers if takers.len() > MOST_LISTED => contents_of(scene),
-        [only] => format!("it belongs to the problem {only}"),
-        [others @ .., last] => format!("it belongs to the problems {} and {last}", others.join(", ")),
+        [only] => format!("only {only} has it"),
+        [others @ .., last] => format!("{} and {last} have it", others.join(", ")),
     }
 }
 
@@ -173,7 +173,7 @@ impl Checker<'_> {
         if !base.scene.takes("soils") {
             self.complain(
                 whole,
-                format!("the soil of the problem `{}` has no layers", base.scene.name),
+                format!("the problem `{}` has no `soils`", base.scene.name),
                 elsewhere("soils", base.scene),
             );
             return SoilLayers::default();

@@ -56,7 +56,7 @@ mod point_sets {
             (growing.replace("20.0", "20.0\ncolumn.self_weight = true"), String::new(), "has no weight here"),
             (growing.replace("20.0", "20.0\ncolumn.strain = 0.2"), String::new(), "have different strains"),
             (of("xie-leo", ""), String::new(), "give a loading time"),
-            (of("terzaghi", ""), String::new(), "has no layers"),
+            (of("terzaghi", ""), String::new(), "has no `soils`"),
             (of("layered", ""), format!("{explicit}formulation = [\"u-p\"]"), "its pressure diffuses"),
             (of("layered", ""), format!("{explicit}formulation = [\"quasi-static\"]"), "cannot be left out"),
         ] {
