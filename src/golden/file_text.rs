@@ -3,7 +3,7 @@
 use crate::golden::measure::{GoldenKey, Measure, SpreadKey, Spreading, TimeFactor};
 use crate::golden::older;
 use crate::golden::text_error::{CellError, GoldenTextError};
-use crate::golden::{CaseMark, GoldenFile, LAYOUT};
+use crate::golden::{GoldenFile, LAYOUT};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -91,7 +91,7 @@ impl GoldenFile {
         writer
             .write_record(LABELS.map(str::to_owned).into_iter().chain(columns.iter().map(Column::title)))?;
         for ((case, time), row) in &rows {
-            let hash = self.cases.get(*case).filter(|_| time.is_none()).map_or("", CaseMark::hash);
+            let hash = self.cases.get(*case).filter(|_| time.is_none()).map_or("", String::as_str);
             let time = time.map_or(String::new(), |TimeFactor(time)| time.to_string());
             let cells = columns.iter().map(|column| row.get(column).copied().map_or(String::new(), decimal));
             writer.write_record([case.to_string(), hash.to_owned(), time].into_iter().chain(cells))?;
@@ -139,9 +139,9 @@ impl GoldenFile {
     /// Takes the values and spreads of a row of the table.
     fn take_row(&mut self, columns: &[Column], record: &csv::StringRecord) -> Result<(), CellError> {
         let (case, hash, time): (Arc<str>, _, _) = (record[0].into(), &record[1], time_of(&record[2])?);
-        let mark = self.cases.entry(case.clone()).or_default();
+        let known = self.cases.entry(case.clone()).or_default();
         if !hash.is_empty() {
-            *mark = CaseMark::Hash(hash.to_owned());
+            hash.clone_into(known);
         }
         let cells = columns.iter().zip(record.iter().skip(LABELS.len()));
         for (column, cell) in cells.filter(|(_, cell)| !cell.is_empty()) {
@@ -202,10 +202,8 @@ mod tests {
         ];
         let spread = [(key(CASE, 0.05, "water balance"), 3.8e-11), (key(CASE, 0.05, pressure), 1e-12)];
         let spread = spread.map(|(key, spread)| (key.spread().expect("a spread"), spread)).into();
-        let hash = |hash: &str| CaseMark::Hash(hash.to_owned());
-        let cases =
-            [(CASE, hash("0123")), ("MPM cells=8", CaseMark::Unknown), ("without values", hash("4567"))];
-        let cases = cases.map(|(case, mark)| (Arc::from(case), mark)).into();
+        let cases = [(CASE, "0123"), ("MPM cells=8", ""), ("without values", "4567")];
+        let cases = cases.map(|(case, hash)| (Arc::from(case), hash.to_owned())).into();
         GoldenFile {
             cases,
             spread,

@@ -42,9 +42,6 @@ use std::sync::Arc;
 /// Version of the file's layout.
 const LAYOUT: u32 = 4;
 
-/// Inputs of a case by their keys in a study file (`youngs_modulus`, `points.jitter`), as a study may give them.
-type Inputs = BTreeMap<String, String>;
-
 /// Golden values of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GoldenFile {
@@ -52,42 +49,14 @@ pub struct GoldenFile {
     pub study: String,
     /// Why these values were taken.
     pub reason: String,
-    /// The cases by their labels, with what tells their inputs.
-    pub cases: BTreeMap<Arc<str>, CaseMark>,
+    /// The cases by their labels, with the hashes of their inputs; empty where that is not known.
+    pub cases: BTreeMap<Arc<str>, String>,
     /// Signed errors, balances, steps and critical steps.
     pub values: BTreeMap<GoldenKey, f64>,
     /// Largest change by round-off that was measured: a tolerance is ten times as wide.
     pub spread: BTreeMap<SpreadKey, f64>,
     /// Change of each value, and of the part of 1 that it is, that the study lets pass.
     pub wider: f64,
-}
-
-/// What tells the inputs of a case.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum CaseMark {
-    /// Nothing.
-    #[default]
-    Unknown,
-    /// The hash of the case.
-    Hash(String),
-    /// The inputs themselves, in layout 3.
-    Inputs(BTreeMap<String, String>),
-}
-
-impl CaseMark {
-    /// The hash, where it is known.
-    fn hash(&self) -> &str {
-        if let Self::Hash(hash) = self { hash } else { "" }
-    }
-
-    /// Whether a case has the inputs; none where nothing is known of them.
-    fn is_of(&self, case: &Case) -> Option<bool> {
-        match self {
-            Self::Unknown => None,
-            Self::Hash(hash) => Some(*hash == case.hash()),
-            Self::Inputs(inputs) => Some(*inputs == older::inputs_of(case)),
-        }
-    }
 }
 
 /// An error behind another one.
@@ -143,11 +112,10 @@ impl GoldenError {
 impl GoldenFile {
     /// The values of records as golden, for a reason.
     pub fn of(study: &str, records: &[Record], reason: &str) -> Self {
-        let mark = |record: &Record| (record.case.label().into(), CaseMark::Hash(record.case.hash()));
         Self {
             study: study.to_owned(),
             reason: reason.to_owned(),
-            cases: records.iter().map(mark).collect(),
+            cases: records.iter().map(|record| (record.case.label().into(), record.case.hash())).collect(),
             values: values_of(records),
             spread: BTreeMap::new(),
             wider: 0.0,
@@ -158,71 +126,55 @@ impl GoldenFile {
     /// same. And the labels of the cases with other inputs.
     #[must_use]
     pub fn beside(mut self, cases: &[&Case]) -> (Self, Vec<String>) {
-        let present: BTreeMap<Arc<str>, &Case> =
-            cases.iter().map(|case| (case.label().into(), *case)).collect();
-        let is_new = |(label, _): &(&Arc<str>, &&Case)| !self.cases.contains_key(*label);
-        let new = || present.iter().filter(is_new).map(|(label, case)| (label.clone(), *case));
-        let gone: Vec<_> = self.cases.iter().filter(|(label, _)| !present.contains_key(*label)).collect();
-        let knows_inputs = gone.iter().any(|(_, mark)| matches!(mark, CaseMark::Inputs(_)));
-        let mut by_hash: BTreeMap<String, Arc<str>> =
-            new().map(|(label, case)| (case.hash(), label)).collect();
-        let mut by_inputs: BTreeMap<Inputs, Arc<str>> =
-            new().filter(|_| knows_inputs).map(|(label, case)| (older::inputs_of(case), label)).collect();
-        let partner = |(label, mark): (&Arc<str>, &CaseMark)| {
-            let now = match mark {
-                CaseMark::Hash(hash) => by_hash.remove(hash),
-                CaseMark::Inputs(inputs) => by_inputs.remove(inputs),
-                CaseMark::Unknown => None,
-            };
-            Some((label.clone(), now?))
-        };
-        let renamed: BTreeMap<Arc<str>, Arc<str>> = gone.into_iter().filter_map(partner).collect();
-        let is_other = |(label, mark): &(&Arc<str>, &CaseMark)| {
-            present.get(*label).is_some_and(|case| mark.is_of(case) == Some(false))
+        let present: BTreeMap<Arc<str>, String> =
+            cases.iter().map(|case| (case.label().into(), case.hash())).collect();
+        let is_new = |(label, _): &(&Arc<str>, &String)| !self.cases.contains_key(*label);
+        let mut new: BTreeMap<&String, &Arc<str>> =
+            present.iter().filter(is_new).map(|(label, hash)| (hash, label)).collect();
+        let gone = self.cases.iter().filter(|(label, _)| !present.contains_key(*label));
+        let renamed = gone.filter_map(|(label, hash)| Some((label.clone(), new.remove(hash)?.clone())));
+        let renamed: BTreeMap<Arc<str>, Arc<str>> = renamed.collect();
+        let is_other = |(label, hash): &(&Arc<str>, &String)| {
+            !hash.is_empty() && present.get(*label).is_some_and(|now| now != *hash)
         };
         let others = self.cases.iter().filter(is_other).map(|(label, _)| label.to_string()).collect();
-        self.rename_cases(|label| renamed.get(label).cloned());
+        self.put_at(|case, time| (renamed.get(&case).cloned().unwrap_or(case), time));
         (self, others)
     }
 
-    /// Puts what is kept of a case under another label, where it has one.
-    fn rename_cases(&mut self, other: impl Fn(&Arc<str>) -> Option<Arc<str>>) {
-        let label = |case: Arc<str>| other(&case).unwrap_or(case);
+    /// Puts what is kept of each case and output under another label and another time factor.
+    fn put_at(&mut self, place: impl Fn(Arc<str>, Option<TimeFactor>) -> (Arc<str>, Option<TimeFactor>)) {
         let cases = std::mem::take(&mut self.cases).into_iter();
-        self.cases = cases.map(|(case, mark)| (label(case), mark)).collect();
-        let values = std::mem::take(&mut self.values).into_iter();
-        self.values =
-            values.map(|(key, value)| (GoldenKey { case: label(key.case), ..key }, value)).collect();
-        let spread = std::mem::take(&mut self.spread).into_iter();
-        self.spread =
-            spread.map(|(key, value)| (SpreadKey { case: label(key.case), ..key }, value)).collect();
+        self.cases = cases.map(|(case, hash)| (place(case, None).0, hash)).collect();
+        let values = std::mem::take(&mut self.values).into_iter().map(|(key, value)| {
+            let (case, time) = place(key.case, key.time);
+            (GoldenKey { case, time, ..key }, value)
+        });
+        self.values = values.collect();
+        let spread = std::mem::take(&mut self.spread).into_iter().map(|(key, value)| {
+            let (case, time) = place(key.case, key.time);
+            (SpreadKey { case, time, ..key }, value)
+        });
+        self.spread = spread.collect();
     }
 
     /// The file of a study that names times: the outputs of a case whose inputs are others stand under the time factors of
     /// now, one by one, for they are at the same times.
     #[must_use]
     pub fn at_the_times_of(mut self, cases: &[&Case], others: &[String]) -> Self {
-        for case in cases {
+        for case in cases.iter().filter(|case| others.contains(&case.label())) {
             let label: Arc<str> = case.label().into();
-            let is_own = |key: &&GoldenKey| key.case == label;
-            let before: BTreeSet<TimeFactor> =
-                self.values.keys().filter(is_own).filter_map(|key| key.time).collect();
+            let of_case = self.values.keys().filter(|key| key.case == label);
+            let before: BTreeSet<TimeFactor> = of_case.filter_map(|key| key.time).collect();
             let now: BTreeSet<TimeFactor> = case.time_factors.iter().copied().map(TimeFactor).collect();
-            if !others.iter().any(|other| **other == *label) || before.len() != now.len() {
-                continue;
+            if before.len() == now.len() {
+                let moved: BTreeMap<TimeFactor, TimeFactor> = before.into_iter().zip(now).collect();
+                let at = |time: TimeFactor| moved.get(&time).copied().unwrap_or(time);
+                self.put_at(|case, time| {
+                    let time = if case == label { time.map(at) } else { time };
+                    (case, time)
+                });
             }
-            let moved: BTreeMap<TimeFactor, TimeFactor> = before.into_iter().zip(now).collect();
-            let at = |time: Option<TimeFactor>| time.map(|time| moved.get(&time).copied().unwrap_or(time));
-            let values = std::mem::take(&mut self.values).into_iter().map(|(key, value)| {
-                let time = if key.case == label { at(key.time) } else { key.time };
-                (GoldenKey { time, ..key }, value)
-            });
-            self.values = values.collect();
-            let spread = std::mem::take(&mut self.spread).into_iter().map(|(key, value)| {
-                let time = if key.case == label { at(key.time) } else { key.time };
-                (SpreadKey { time, ..key }, value)
-            });
-            self.spread = spread.collect();
         }
         self
     }
@@ -419,7 +371,7 @@ mod tests {
         let mut file = GoldenFile::of("t", &[], "test");
         for (case, number) in cases.iter().zip([1.0, 2.0, 3.0, 4.0]) {
             let label = label(case);
-            file.cases.insert(label.as_str().into(), CaseMark::Hash(case.hash()));
+            file.cases.insert(label.as_str().into(), case.hash());
             for time in case.time_factors.iter() {
                 let key = key(&label, *time, "pressure points terzaghi");
                 file.spread.insert(key.spread().expect("a spread"), number);
@@ -448,12 +400,8 @@ mod tests {
         let (found, others) = now.clone().beside(&[&other, all[1]]);
         assert_eq!((found, others), (now.clone(), vec![two.clone()]));
         let mut unknown = now.clone();
-        unknown.cases.insert(two.as_str().into(), CaseMark::Unknown);
+        unknown.cases.insert(two.as_str().into(), String::new());
         assert_eq!(unknown.clone().beside(&[&other, all[1]]), (unknown, vec![]));
-        // Layout 3 tells the inputs themselves.
-        let mut of_inputs = now.clone();
-        of_inputs.cases.insert(two.as_str().into(), CaseMark::Inputs(older::inputs_of(all[0])));
-        assert_eq!(of_inputs.beside(&[&other, all[1]]).1, [two]);
     }
 
     #[test]

@@ -191,7 +191,7 @@ pub(crate) fn unreadable(commit: &Commit, path: &str, reason: &GoldenTextError) 
 }
 
 /// The cases of a study as it stood then; `None` where this program refuses it.
-fn cases_of_study(path: &str, text: &str) -> Option<BTreeMap<String, Case>> {
+pub(crate) fn cases_of_study(path: &str, text: &str) -> Option<BTreeMap<String, Case>> {
     let study = Study::check(&StudySource { name: path.to_owned(), text: text.to_owned() }).ok()?;
     Some(study.planned.into_iter().map(|planned| (planned.case.label(), planned.case)).collect())
 }

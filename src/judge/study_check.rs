@@ -8,6 +8,7 @@ use crate::foreign::reading::mapping_of;
 use crate::golden::compare::{
     CaseChange, Change, Difference, DifferenceGroup, case_changes, compare, groups_of,
 };
+use crate::golden::inputs::InputChange;
 use crate::golden::measure::{GoldenKey, Measure, TimeFactor};
 use crate::golden::{GoldenError, GoldenFile, values_of};
 use crate::import::SampledState;
@@ -51,6 +52,8 @@ pub struct StudyCheck {
     pub judgements: Vec<Judgement>,
     /// Labels of the cases whose inputs are others than those of their golden values.
     pub other_inputs: Vec<String>,
+    /// What differs in them, where it is known.
+    pub input_changes: Vec<InputChange>,
     /// Expectations that the records meet, as TOML, for a study that has none.
     pub proposals: Vec<String>,
     /// Whether golden values are compared; the study may leave the verdict to its expectations.
@@ -89,6 +92,9 @@ pub struct Objection<'a> {
     /// Why, without what only follows from another reason.
     pub reasons: Vec<&'a str>,
 }
+
+/// Inputs that differ that one sentence names.
+const MOST_INPUTS: usize = 3;
 
 /// How a check came out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -158,6 +164,7 @@ impl StudyCheck {
             }),
             // Partial results of a failed run are not judged.
             other_inputs,
+            input_changes: Vec::new(),
             proposals: proposals(study, paths),
             unsound: notes(&|record| match record.status {
                 Status::Ok if !study.foresees_complaints(record) => soundness::complaints(record),
@@ -245,6 +252,7 @@ impl StudyCheck {
             unsound: Vec::new(),
             judgements: Vec::new(),
             other_inputs: Vec::new(),
+            input_changes: Vec::new(),
             proposals: Vec::new(),
             agreeing: values.len() - changed,
             groups,
@@ -260,14 +268,31 @@ impl StudyCheck {
         }
     }
 
-    /// A sentence on the cases whose inputs are others than those of their golden values, where there are any.
+    /// A sentence on the cases whose inputs are others than those of their golden values, with what differs where that is known;
+    /// none where there are no such cases.
     pub fn told_inputs(&self) -> Option<String> {
         let first = self.other_inputs.first()?;
         let (is, their) = if self.other_inputs.len() == 1 { ("is", "its") } else { ("are", "their") };
+        let which = match self.input_changes.as_slice() {
+            [] => "`git diff` of the study shows which".to_owned(),
+            changes => {
+                let mut told: Vec<String> =
+                    changes.iter().take(MOST_INPUTS).map(InputChange::sentence).collect();
+                let rest = changes.len().saturating_sub(MOST_INPUTS);
+                told.extend((rest > 0).then(|| format!("and {rest} more")));
+                told.join(", ")
+            }
+        };
         Some(format!(
-            "{} {is} of other inputs than {their} golden values, like `{first}`: `git diff` of the study shows which",
+            "{} {is} of other inputs than {their} golden values, like `{first}`: {which}",
             count_of(self.other_inputs.len(), "case", "cases")
         ))
+    }
+
+    /// The same, with what differs in the inputs of its cases.
+    #[must_use]
+    pub fn with_input_changes(self, input_changes: Vec<InputChange>) -> Self {
+        Self { input_changes, ..self }
     }
 
     /// What fails, golden values aside, each once: unmet expectations, failed cases, and records that break a balance or a bound.

@@ -56,6 +56,7 @@ pub(super) mod tests {
             failed_cases: (0..failures).map(note).collect(),
             unsound: Vec::new(),
             other_inputs: Vec::new(),
+            input_changes: Vec::new(),
             proposals: Vec::new(),
             judgements: Vec::new(),
             golden: Ok(Vec::new()),

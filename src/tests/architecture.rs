@@ -1,5 +1,6 @@
 //! What the borders of the crates and `source_order` cannot say: where files are opened, and which types errors have.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -57,6 +58,60 @@ fn no_reader_opens_files_by_itself() {
         for opening in ["File::open", "fs::read(", "read_to_string("] {
             assert!(!code.contains(opening), "{} has `{opening}`", path.display());
         }
+    }
+}
+
+/// Predicates of `impl Scene`, by the code of its file.
+fn predicates(code: &str) -> Vec<String> {
+    let inside =
+        code.split("impl Scene {").nth(1).and_then(|rest| rest.split("\n}\n").next()).expect("an impl");
+    let answers = |line: &&str| {
+        line.ends_with("-> bool {")
+            || line.contains("-> Option<&'static str>")
+            || line.contains("-> Option<String>")
+    };
+    let signatures =
+        inside.lines().map(str::trim_start).filter(|line| line.starts_with("pub fn ")).filter(answers);
+    signatures.filter_map(|line| Some(line["pub fn ".len()..].split_once('(')?.0.to_owned())).collect()
+}
+
+/// Scenes that code names, as `&TERZAGHI` or by a comparison with the name.
+fn named_scenes(code: &str) -> Vec<String> {
+    let statics: Vec<String> =
+        oedometer_scenes::NAMES.iter().map(|name| name.to_uppercase().replace('-', "_")).collect();
+    let words = code.split(|letter: char| !letter.is_alphanumeric() && !"_&".contains(letter));
+    let by_static = words
+        .filter(|word| word.strip_prefix('&').is_some_and(|name| statics.iter().any(|known| known == name)));
+    let by_name = ["scene.name ==", "scene.name !=", "match scene.name", "scene.name {"]
+        .into_iter()
+        .filter(|words| code.contains(words));
+    by_static.map(str::to_owned).chain(by_name.map(str::to_owned)).collect()
+}
+
+/// What the other crates ask of a scene: ten predicates at most, and never which one it is but for the paper's figures, which are
+/// of two scenes.
+#[test]
+fn a_scene_is_asked_few_predicates_and_not_which_one_it_is() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let scene = fs::read_to_string(root.join("crates/scenes/src/scene.rs")).expect("the scene");
+    let known = predicates(&scene);
+    assert!(known.iter().any(|name| name == "is_loaded"), "{known:?}");
+    let mut sources = sources_below(&root.join("src"));
+    for folder in ["case", "foreign", "mpm", "problem"] {
+        sources.extend(sources_below(&root.join("crates").join(folder).join("src")));
+    }
+    let (mut asked, mut named) = (BTreeSet::new(), Vec::new());
+    for path in sources.iter().filter(|path| !is_test_module(path)) {
+        let text = fs::read_to_string(path).expect("a source");
+        let code = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
+        asked.extend(known.iter().filter(|name| code.contains(&format!(".{name}("))));
+        let inside = path.strip_prefix(root).expect("below the root").display();
+        named.extend(named_scenes(code).iter().map(|scene| format!("{inside}: {scene}")));
+    }
+    assert!(asked.len() <= 10, "{asked:?}");
+    assert_eq!(named, ["src/questions/paper.rs: &XIE_LEO", "src/questions/paper.rs: &TERZAGHI"]);
+    for planted in ["if scene == &AT_REST {", "if scene.name == \"footing\" {", "match scene.name {"] {
+        assert!(!named_scenes(planted).is_empty(), "{planted}");
     }
 }
 

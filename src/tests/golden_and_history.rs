@@ -1,10 +1,10 @@
 //! Golden values against generated present ones, and states beside each other: every difference, group, trend and order, whole.
 //! And golden files with one edit.
 
+use crate::golden::GoldenFile;
 use crate::golden::compare::{case_changes, compare, groups_of};
 use crate::golden::measure::{GoldenKey, SpreadKey, key};
 use crate::golden::tolerance::spread_by_group;
-use crate::golden::{CaseMark, GoldenFile};
 use crate::history::comparison::{StudyComparison, compare_states};
 use crate::history::state::{State, StudyState};
 use crate::tests::{assert_snapshot, told};
@@ -155,8 +155,7 @@ fn golden_files_with_one_edit_are_read_or_refused_as_they_were() {
     let mut golden = golden();
     golden.spread = [spread()].into();
     golden.cases =
-        [("MPM implicit cells=5 points=2 growth=0.05".into(), CaseMark::Hash("0123456789abcdef".to_owned()))]
-            .into();
+        [("MPM implicit cells=5 points=2 growth=0.05".into(), "0123456789abcdef".to_owned())].into();
     let whole = golden.to_text().expect("a text");
     let back = GoldenFile::from_text(&whole).expect("it is read");
     assert_eq!(back.to_text().expect("a text"), whole);

@@ -47,31 +47,32 @@ pub struct Block {
 }
 
 impl Block {
-    /// The block in which a place of the text lies.
+    /// The block in which a place of the text lies: that of the last key or value before it.
     pub fn at(root: &DeTable<'_>, place: usize) -> Option<Self> {
-        root.iter().find_map(|(name, value)| {
-            let block = |number| Some(Self { table: name.get_ref().to_string(), number });
-            match value.get_ref() {
-                DeValue::Array(blocks) => {
-                    let number = blocks.iter().position(|inner| holds(inner, place));
-                    number.map_or_else(|| value.span().contains(&place).then(|| block(0))?, block)
-                }
-                _ => (name.span().contains(&place) || holds(value, place)).then(|| block(0))?,
-            }
-        })
+        let blocks = root.iter().flat_map(|(name, value)| {
+            let of = |number, start| (start, Self { table: name.get_ref().to_string(), number });
+            let list = value.get_ref().as_array().into_iter().flat_map(|list| list.iter().enumerate());
+            let items = list.map(move |(number, item)| of(number, last_start(item, place)));
+            let whole = name.span().start.max(last_start(value, place).unwrap_or_default());
+            items.chain([of(0, (name.span().start <= place).then_some(whole))])
+        });
+        let before = blocks.filter_map(|(start, block)| Some((start?, block)));
+        before.min_by_key(|(start, _)| place - start).map(|(_, block)| block)
     }
 }
 
-/// Whether a place lies in a value, or in a key or value inside it.
-fn holds(value: &Spanned<DeValue<'_>>, place: usize) -> bool {
-    value.span().contains(&place)
-        || match value.get_ref() {
-            DeValue::Table(table) => {
-                table.iter().any(|(key, value)| key.span().contains(&place) || holds(value, place))
-            }
-            DeValue::Array(list) => list.iter().any(|item| holds(item, place)),
-            _ => false,
+/// Where the last key or value of a value begins that lies before a place.
+fn last_start(value: &Spanned<DeValue<'_>>, place: usize) -> Option<usize> {
+    let own = Some(value.span().start).filter(|start| *start <= place);
+    let inner = match value.get_ref() {
+        DeValue::Table(table) => {
+            let keys = table.keys().map(|key| key.span().start).filter(|start| *start <= place);
+            keys.chain(table.values().filter_map(|value| last_start(value, place))).max()
         }
+        DeValue::Array(list) => list.iter().filter_map(|item| last_start(item, place)).max(),
+        _ => None,
+    };
+    own.max(inner)
 }
 
 /// What becomes of the key or the value at a place.

@@ -255,7 +255,8 @@ impl<'a> UnknownKey<'a> {
     pub(crate) fn among(name: &str, known: &[&'a str]) -> Self {
         let has = |wanted: &str| known.iter().copied().find(|key| *key == wanted);
         let (mut meant, mut home) = (None, None);
-        let help = if let Some(new) = RENAMED.iter().find_map(|(old, new)| has(new).filter(|_| *old == name)) {
+        let help = if let Some(new) = RENAMED.iter().find_map(|(old, new)| has(new).filter(|_| *old == name))
+        {
             meant = Some(new);
             format!("it is called `{new}` now")
         } else if has(read_as(name)).is_some() {
@@ -264,12 +265,15 @@ impl<'a> UnknownKey<'a> {
             let usual = self::meant(KEY_NAMES, name).filter(|key| *key != name);
             let near = || nearest(name, known.iter().copied());
             meant = usual.and_then(has).or_else(|| near().filter(|_| derived(name).is_none()));
-            let of_key = |name: &str| KEYS.iter().find(|key| key.name == name).map(|key| (key.name, table_of(key)));
+            let of_key =
+                |name: &str| KEYS.iter().find(|key| key.name == name).map(|key| (key.name, table_of(key)));
             let key = usual.unwrap_or(name);
-            let of_table = || TABLE_KEYS.iter().find_map(|(table, keys)| {
-                let key = keys.iter().find(|known| **known == key)?;
-                Some((*key, *table))
-            });
+            let of_table = || {
+                TABLE_KEYS.iter().find_map(|(table, keys)| {
+                    let key = keys.iter().find(|known| **known == key)?;
+                    Some((*key, *table))
+                })
+            };
             let elsewhere = || of_table().or_else(|| of_key(name)).or_else(|| of_key(key));
             if let Some(meant) = meant {
                 format!("did you mean `{meant}`?")

@@ -86,13 +86,19 @@ impl StudySource {
         read: impl Fn(Spanned<DeTable<'_>>) -> Result<T, Error>,
     ) -> Result<T, Box<Unread<T>>> {
         let unread = |found, rest| Box::new(Unread { error: self.error(found), rest });
-        let mut root =
-            DeTable::parse(&self.text).map_err(|error| unread(vec![self.syntax(&error)], None))?;
+        let (mut root, broken) = DeTable::parse_recoverable(&self.text);
         if FIELD_TERMS.iter().any(|(term, _)| self.text.contains(term)) {
             read_terms(&schema_of::<T>(), root.as_mut());
         }
-        read(root.clone()).or_else(|error| {
-            let mut mistakes = Mistakes { text: &self.text, ..Mistakes::default() };
+        let mut mistakes = Mistakes { text: &self.text, ..Mistakes::default() };
+        match broken.as_slice() {
+            [] => {}
+            // The other lines are whole.
+            [only] if mistakes.breaks_one_line(only) => mistakes.found.push(self.syntax(only)),
+            [first, ..] => return Err(unread(vec![self.syntax(first)], None)),
+        }
+        let whole = if broken.is_empty() { Some(read(root.clone())) } else { None };
+        whole.unwrap_or_else(|| Err(refusal())).or_else(|error| {
             mistakes.of_table(&schema_of::<T>(), root.get_ref(), 0..0, "");
             let Mistakes { found, mends, places, unknown, is_unreadable, .. } = mistakes;
             let in_block = |(place, key, home): (usize, String, Option<&'static str>)| {
@@ -256,16 +262,39 @@ struct Mistakes<'a> {
     places: Vec<Range<usize>>,
     /// Keys whose values are unknown: a place in their block, the name, and the table that they belong to if that is another.
     unknown: Vec<(usize, String, Option<&'static str>)>,
+    /// A line that is not TOML.
+    broken: Range<usize>,
     /// Whether a whole block is wrong, without which nothing can be read.
     is_unreadable: bool,
+}
+
+fn refusal() -> Error {
+    serde::de::Error::custom("no TOML")
 }
 
 /// Tables of the body and its soil, on which all others rest.
 const BODY: [&str; 3] = ["column", "layer", "material"];
 
 impl Mistakes<'_> {
-    /// Notes a mistake, and what becomes of the key or value at its place.
+    /// Whether a text is broken in the line of one key alone, whose value is not known then.
+    fn breaks_one_line(&mut self, error: &Error) -> bool {
+        let place = error.span().map_or(0, |span| span.start.min(self.text.len()));
+        let from = self.text.get(..place).and_then(|before| before.rfind('\n')).map_or(0, |end| end + 1);
+        let line = self.text.get(from..).and_then(|rest| rest.lines().next()).unwrap_or_default();
+        let is_known = line_mistake(line).0.is_some() && !line.trim_start().starts_with(['[', '{']);
+        let Some((key, _)) = line.split_once('=').filter(|_| is_known) else { return false };
+        self.broken = from..from + line.len();
+        self.places.push(self.broken.clone());
+        self.unknown.push((from, key.trim().to_owned(), None));
+        true
+    }
+
+    /// Notes a mistake, and what becomes of the key or value at its place; nothing in a line that is broken.
     fn note(&mut self, place: Range<usize>, message: String, help: impl Into<String>, mend: Mend) {
+        if self.broken.contains(&place.start) {
+            self.mends.0.push((place, mend));
+            return;
+        }
         self.found.push(Diagnostic::at(place.clone(), message, help));
         self.places.push(place.clone());
         self.mends.0.push((place, mend));

@@ -9,12 +9,13 @@ use crate::cli::output::{
     write_document,
 };
 use crate::cli::place::DEFAULT_RESULTS;
-use crate::cli::place::{StudyArguments, chosen_as, golden_of};
+use crate::cli::place::{StudyArguments, chosen_as, golden_folder, golden_of};
 use crate::cli::running::{jobs_of, run_ci_tier};
 use crate::cli::study_files::load_sound;
 use crate::cli::trust::{self, TrustArguments};
 use crate::golden::compare::{CaseChange, Difference, DifferenceGroup};
 use crate::golden::{GoldenError, GoldenFile};
+use crate::history::accepted_inputs::changes_since;
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::judge::study_results::StudyResults;
 use crate::judge::thinning::thin;
@@ -28,7 +29,7 @@ use crate::report::junit::junit;
 use crate::study::check::Study;
 use oedometer_soil::wording::count_of;
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Arguments of `check`.
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
@@ -78,7 +79,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let (mut studies, bad) = load_sound(&chosen, &arguments.records)?;
     arguments.trust.mark(&mut studies, &chosen);
     let (reports, golden) = reports_of(arguments, &studies, &chosen)?;
-    let (results, tally) = results_of(&studies, &reports, golden);
+    let (results, tally) = results_of(arguments, (&studies, &chosen), &reports, golden);
     if results.is_empty() {
         return Err(Ended::with(Exit::NothingSelected, "no study has a case at the test level `ci`"));
     }
@@ -161,7 +162,8 @@ fn reports_of(
 
 /// The studies that have cases in the CI tier with the verdicts on them, and how the cases of all ended.
 fn results_of<'a>(
-    studies: &'a [Study],
+    arguments: &Arguments,
+    (studies, chosen): (&'a [Study], &[PathBuf]),
     reports: &'a [RunReport],
     golden: Vec<Golden>,
 ) -> (Vec<StudyResults<'a>>, Tally) {
@@ -169,8 +171,15 @@ fn results_of<'a>(
     for ((study, golden), report) in studies.iter().zip(golden).zip(reports) {
         tally.join(report.tally);
         if !(report.records.is_empty() && report.errors.is_empty()) {
+            let hashes = golden.as_ref().map(|golden| golden.cases.clone()).unwrap_or_default();
             let mut compared = StudyResults::compared(study, &report.records, Tier::Ci, golden);
             compared.check = compared.check.with_errors(&report.errors);
+            if !compared.check.other_inputs.is_empty() {
+                let folder = golden_folder(arguments.golden.as_deref(), &study.name, chosen);
+                let file = chosen_as(&study.name, chosen).unwrap_or(Path::new(&study.name));
+                let changes = changes_since(&hashes, study, file, &folder);
+                compared.check = compared.check.with_input_changes(changes);
+            }
             results.push(compared.with_taken_over(&report.taken_over));
         }
     }

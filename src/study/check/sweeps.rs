@@ -55,7 +55,10 @@ impl Checker<'_> {
             return;
         }
         for (name, complaints) in refused {
-            self.leave_out(name, complaints[0].diagnostic.message.split(": a case").next().unwrap_or_default());
+            self.leave_out(
+                name,
+                complaints[0].diagnostic.message.split(": a case").next().unwrap_or_default(),
+            );
         }
     }
 
@@ -79,7 +82,12 @@ impl Checker<'_> {
         for (name, example) in [("method", "[\"GC-SRI-patch\"]"), ("cells", "[5, 10, 20]")] {
             if table.inputs.typed(name).is_none() {
                 let message = format!("the sweep names no {name}");
-                self.complain_by(Basis::Lack(name), start.clone(), message, format!("add `{name} = {example}`"));
+                self.complain_by(
+                    Basis::Lack(name),
+                    start.clone(),
+                    message,
+                    format!("add `{name} = {example}`"),
+                );
             }
         }
         let mut keys = Vec::new();
