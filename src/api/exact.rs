@@ -3,6 +3,7 @@
 use crate::api::error::ApiError;
 use crate::api::scene_of;
 use crate::study::overrides::{Asked, Assignments};
+use oedometer_exact::row::Axis;
 use oedometer_exact::{Accuracy, ColumnParameters, ExactError, FieldValues, Reference, ReferenceKind};
 
 /// An exact solution at times and depths, in SI.
@@ -51,7 +52,7 @@ pub fn exact(
     assignments: &[String],
 ) -> Result<ExactValues, ApiError> {
     let (kind, _) = scene_of(solution)?;
-    if kind == ReferenceKind::Mandel && (x.is_empty() || !depths.is_empty()) {
+    if kind.row().axis == Axis::AlongSlab && (x.is_empty() || !depths.is_empty()) {
         let why = "the fields of `mandel` depend on the distance from its middle: give `x`, from 0 to 1, and no depth";
         return Err(ApiError::Unfit(why.to_owned()));
     }
@@ -66,7 +67,7 @@ pub fn exact(
         let degree = degree_of(&reference, *time_factor)?;
         values.degree_of_consolidation.push(degree.unwrap_or(f64::NAN));
         values.tail_bound.push(accuracy_of(&reference, *time_factor)?.tail_bound);
-        if kind == ReferenceKind::Mandel {
+        if kind.row().axis == Axis::AlongSlab {
             for distance in x {
                 if !(0.0..=1.0).contains(distance) {
                     return Err(ExactError::Distance(*distance).into());

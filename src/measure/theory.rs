@@ -55,7 +55,7 @@ pub fn known_reference(
     static KNOWN: Known<Arc<Reference>> = LazyLock::new(Mutex::default);
     let parameters = column_parameters(&case.column, &case.material);
     let make = || Reference::new(kind, &parameters, times).map(Arc::new);
-    if !kind.is_prepared() {
+    if !kind.row().is_prepared {
         return make();
     }
     known_or(&KNOWN, format!("{kind:?} {parameters:?} {times:?}"), make)
@@ -186,7 +186,7 @@ mod tests {
         let mut softer = case.clone();
         softer.material.youngs_modulus *= 0.5;
         let kind = ReferenceKind::DynamicSingleMode;
-        assert!(kind.is_prepared() && !ReferenceKind::Terzaghi.is_prepared());
+        assert!(kind.row().is_prepared && !ReferenceKind::Terzaghi.row().is_prepared);
         // The second time all of them are known.
         for case in [&case, &softer, &case, &softer] {
             let parameters = column_parameters(&case.column, &case.material);

@@ -5,6 +5,7 @@ use crate::render::number;
 use crate::render::table::Cell;
 use crate::study::expectation::{Axis, NEXT_FINER};
 use oedometer_convergence::Class;
+use oedometer_exact::reference::ReferenceKind;
 
 /// What every cost is, wherever one stands.
 pub const COUNTED_WORK: &str = "counted operations times their calibrated times";
@@ -62,28 +63,12 @@ pub fn ticks(sizes: impl Iterator<Item = f64>) -> Vec<f64> {
 
 /// A reference in words, for running text.
 pub fn solution(reference: &str) -> String {
-    let words = match reference {
-        NEXT_FINER => "the next finer run",
-        "terzaghi" => "Terzaghi's solution with compressible water",
-        "terzaghi-incompressible" => "Terzaghi's solution",
-        "single-mode" => "the exact first eigenmode",
-        "xie-leo" => "Xie & Leo's solution",
-        "dynamic-column" => "the exact column with inertia",
-        "dynamic-single-mode" => "the exact first eigenmode with inertia",
-        "standing-wave" => "the exact standing wave",
-        "large-strain" => "the exact large-strain solution of its own equations",
-        "cosine-layer" => "the exact layer with compressible water",
-        "cosine-layer-incompressible" => "the exact layer with incompressible water",
-        "mandel" => "Mandel's solution with compressible water",
-        "at-rest" => "hydrostatic equilibrium",
-        "layered" => "the exact column of layers",
-        "yield-front" => "the exact yield front",
-        "sealed-element" => "the exact sealed column",
-        "footing" => "Prandtl's load at collapse",
-        "manufactured-box" | "manufactured-shear" | "manufactured-vortex" => "the manufactured solution",
-        other => return format!("the exact solution `{other}`"),
-    };
-    words.to_owned()
+    if reference == NEXT_FINER {
+        return "the next finer run".to_owned();
+    }
+    let known: Option<ReferenceKind> = reference.parse().ok();
+    let words = known.map(|kind| kind.row().words).filter(|words| !words.is_empty());
+    words.map_or_else(|| format!("the exact solution `{reference}`"), str::to_owned)
 }
 
 /// A reference as the name of a line.
@@ -151,7 +136,6 @@ pub fn error_axis(of: Quantity) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use oedometer_exact::reference::ReferenceKind;
 
     #[test]
     fn every_size_has_one_tick_in_rising_order() {

@@ -4,6 +4,7 @@ use crate::import::SampledState;
 use crate::score::coverage;
 use crate::score::coverage::{Bare, End};
 use crate::score::score_series::time_factors;
+use oedometer_exact::row::Axis;
 use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
 use oedometer_soil::elementary::ln;
 use oedometer_soil::wording::{count_of, short, typed, words};
@@ -199,7 +200,7 @@ impl Whole<'_> {
         let distances = coverage::lines(&state.initial_distance, self.parameters.length);
         let all = |lines: &[f64]| lines.iter().map(|line| short(*line)).collect::<Vec<_>>().join(", ");
         let place = if heights.len() == 1 {
-            let axis = if self.reference == ReferenceKind::Mandel { "x" } else { "y" };
+            let axis = if self.reference.row().axis == Axis::AlongSlab { "x" } else { "y" };
             format!("{axis} = {}", all(&heights))
         } else if self.is_plane() && distances.len() <= PROFILES {
             format!("x = {}", all(&distances))
@@ -211,8 +212,8 @@ impl Whole<'_> {
 
     /// Nodes of which the outermost row is missing at an end; a place declared to be one has its row at both.
     pub fn end_without_sample(&self, states: &[SampledState], are_nodes: bool) -> Option<Finding> {
-        let [base, surface, axis] = match self.reference {
-            ReferenceKind::Mandel => ["the middle", "the drained side", "x"],
+        let [base, surface, axis] = match self.reference.row().axis {
+            Axis::AlongSlab => ["the middle", "the drained side", "x"],
             _ => ["the base", "the surface", "y"],
         };
         let place = |end: &str, at: f64| format!("{end} ({axis} = {} m)", short(at));
@@ -241,7 +242,8 @@ impl Whole<'_> {
         let can_scatter = !state.initial_distance.is_empty();
         let is_one_height = |lines: &[f64]| lines.len() == 1;
         let bare = bare_along(&state.initial_height, self.parameters.height, can_scatter, is_one_height)?;
-        let from = if self.reference == ReferenceKind::Mandel { "from the middle" } else { "over the base" };
+        let from =
+            if self.reference.row().axis == Axis::AlongSlab { "from the middle" } else { "over the base" };
         Some(stretch(bare, from))
     }
 
@@ -280,7 +282,7 @@ impl Whole<'_> {
     }
 
     fn is_plane(&self) -> bool {
-        matches!(self.reference, ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible)
+        self.reference.row().axis == Axis::InPlane
     }
 }
 

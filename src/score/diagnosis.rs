@@ -18,6 +18,7 @@ use crate::import::SampledState;
 use crate::import::mapping::Mapping;
 use crate::score::coverage::SAME_PLACE;
 use columns::{Column, Field, Given, Output};
+use oedometer_exact::row::Axis;
 use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
 use oedometer_soil::wording::short;
 use search::{Explanation, Found};
@@ -213,7 +214,7 @@ impl Scene<'_> {
 
     /// A sentence about the top of a column that does not stay plane: samples of its highest row that settle differently.
     fn uneven_top(&self, states: &[SampledState]) -> Option<String> {
-        if self.solution.is_plane() || self.solution.kind() == ReferenceKind::Mandel {
+        if self.solution.kind().row().axis != Axis::OverDepth {
             return None;
         }
         let settled = self.parameters.final_settlement();

@@ -27,7 +27,7 @@ const SOIL: Order = Order {
 /// The ground knows no problem; the door, `reference`, knows all of them, and none of them knows the door.
 const EXACT: Order = Order {
     root: "crates/exact/src",
-    floors: "exact_error numerics parameters inputs solution talbot porous_soil consolidation/series * reference",
+    floors: "exact_error numerics parameters inputs row solution talbot porous_soil consolidation/series * reference",
     circles: &[],
     licensed: &[],
 };

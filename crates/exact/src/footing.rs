@@ -13,10 +13,17 @@
 use crate::exact_error::{ExactError, checked_time_factor, positive};
 use crate::inputs::LAW_KEY;
 use crate::parameters::ColumnParameters;
+use crate::row::{Changes, Row};
 use crate::solution::{Accuracy, FieldValues, Solution};
 
-/// Study keys that the solution reads.
-pub(crate) const INPUTS: &[&[&str]] = &[LAW_KEY, &["plate_width"]];
+/// The row of the solution.
+pub(crate) static FOOTING: Row = Row {
+    name: "footing",
+    words: "Prandtl's load at collapse",
+    inputs: &[LAW_KEY, &["plate_width"]],
+    changes: Changes::Still,
+    ..Row::COLUMN
+};
 
 /// `F/(B c_u)` at collapse.
 pub const LOAD_FACTOR: f64 = 2.0 + std::f64::consts::PI;

@@ -18,13 +18,20 @@ use crate::exact_error::{ExactError, checked_depth, checked_time_factor, held_wi
 use crate::inputs::{COLUMN_KEYS, DRAINAGE_KEY, LAW_KEY, WATER_KEYS};
 use crate::numerics::bisected;
 use crate::parameters::{ColumnParameters, Drainage};
+use crate::row::Row;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use crate::talbot::{NODES, talbot_contour};
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 
-/// Study keys that the solution reads.
-pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, DRAINAGE_KEY, WATER_KEYS, LAW_KEY, &["soils"]];
+/// The row of the solution.
+pub(crate) static LAYERED: Row = Row {
+    name: "layered",
+    words: "the exact column of layers",
+    inputs: &[COLUMN_KEYS, DRAINAGE_KEY, WATER_KEYS, LAW_KEY, &["soils"]],
+    adds_up: true,
+    ..Row::COLUMN
+};
 
 /// Modes beyond which the transform takes over.
 const MOST_MODES: usize = 1000;

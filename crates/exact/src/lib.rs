@@ -43,6 +43,7 @@ pub mod numerics;
 pub mod parameters;
 mod porous_soil;
 pub mod reference;
+pub mod row;
 pub mod shelf;
 pub mod single_mode;
 pub mod solution;

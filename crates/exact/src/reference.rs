@@ -17,6 +17,7 @@ use crate::manufactured::motion::{ManufacturedModel, Motion};
 use crate::manufactured::{self, Manufactured};
 use crate::mirrored::Mirrored;
 use crate::parameters::{ColumnParameters, Drainage, Water};
+use crate::row::Row;
 use crate::shelf::ShelfProblem;
 use crate::single_mode::{self, SingleMode};
 use crate::solution::{Accuracy, FieldValues, Solution};
@@ -93,53 +94,39 @@ impl ReferenceKind {
         Self::Manufactured(ManufacturedModel::with_default_law(Motion::Vortex)),
     ];
 
+    /// What is known of the solution whatever its parameters, and whatever the model.
+    pub const fn row(self) -> &'static Row {
+        match self {
+            Self::Terzaghi => &terzaghi::TERZAGHI,
+            Self::TerzaghiIncompressible => &terzaghi::TERZAGHI_INCOMPRESSIBLE,
+            Self::SingleMode => &single_mode::SINGLE_MODE,
+            Self::XieLeo => &xie_leo::XIE_LEO,
+            Self::DynamicColumn => &dynamic_column::DYNAMIC_COLUMN,
+            Self::DynamicSingleMode => &dynamic_column::DYNAMIC_SINGLE_MODE,
+            Self::StandingWave => &dynamic_column::STANDING_WAVE,
+            Self::LargeStrain(_) => &large_strain::LARGE_STRAIN,
+            Self::CosineLayer => &cosine_layer::COSINE_LAYER,
+            Self::CosineLayerIncompressible => &cosine_layer::COSINE_LAYER_INCOMPRESSIBLE,
+            Self::Mandel => &mandel::MANDEL,
+            Self::AtRest => &unchanging::AT_REST,
+            Self::Layered => &layered::LAYERED,
+            Self::YieldFront => &yield_front::YIELD_FRONT,
+            Self::SealedElement => &unchanging::SEALED_ELEMENT,
+            Self::Footing => &footing::FOOTING,
+            Self::Manufactured(model) => &manufactured::ROWS[model.motion as usize],
+            Self::Shelf(problem) => problem.row(),
+        }
+    }
+
     /// Name in study files and tables; the same for large strain with any model.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Terzaghi => "terzaghi",
-            Self::TerzaghiIncompressible => "terzaghi-incompressible",
-            Self::SingleMode => "single-mode",
-            Self::XieLeo => "xie-leo",
-            Self::DynamicColumn => "dynamic-column",
-            Self::DynamicSingleMode => "dynamic-single-mode",
-            Self::StandingWave => "standing-wave",
-            Self::LargeStrain(_) => "large-strain",
-            Self::CosineLayer => "cosine-layer",
-            Self::CosineLayerIncompressible => "cosine-layer-incompressible",
-            Self::Mandel => "mandel",
-            Self::AtRest => "at-rest",
-            Self::Layered => "layered",
-            Self::YieldFront => "yield-front",
-            Self::SealedElement => "sealed-element",
-            Self::Footing => "footing",
-            Self::Manufactured(model) => model.motion.name(),
-            Self::Shelf(problem) => problem.name(),
-        }
+        self.row().name
     }
 
     /// Study keys that affect the solution, by their names without tables; some only with self-weight.
     pub fn inputs(self, has_weight: bool) -> Vec<&'static str> {
-        let sets = match self {
-            Self::Terzaghi => terzaghi::INPUTS,
-            Self::TerzaghiIncompressible => terzaghi::INPUTS_INCOMPRESSIBLE,
-            Self::SingleMode => single_mode::INPUTS,
-            Self::XieLeo => xie_leo::INPUTS,
-            Self::DynamicColumn => dynamic_column::INPUTS,
-            Self::DynamicSingleMode | Self::StandingWave => dynamic_column::INPUTS_RELEASED,
-            Self::LargeStrain(_) => large_strain::INPUTS,
-            Self::CosineLayer => cosine_layer::INPUTS,
-            Self::CosineLayerIncompressible => cosine_layer::INPUTS_INCOMPRESSIBLE,
-            Self::Mandel => mandel::INPUTS,
-            Self::AtRest => unchanging::INPUTS_AT_REST,
-            Self::Layered => layered::INPUTS,
-            Self::YieldFront => yield_front::INPUTS,
-            Self::SealedElement => unchanging::INPUTS,
-            Self::Footing => footing::INPUTS,
-            Self::Manufactured(_) => manufactured::INPUTS,
-            Self::Shelf(problem) => problem.inputs(),
-        };
         let of_weight = if has_weight { WEIGHT_STRESS_KEYS } else { &[] };
-        sets.iter().copied().flatten().chain(of_weight).copied().collect()
+        self.row().inputs.iter().copied().flatten().chain(of_weight).copied().collect()
     }
 
     /// Whether the solution reads a key that no scene has.
@@ -160,14 +147,6 @@ impl ReferenceKind {
     /// Whether the solution is a prescribed motion instead of a body under a load.
     pub const fn is_manufactured(self) -> bool {
         matches!(self, Self::Manufactured(_))
-    }
-
-    /// Whether the solution must be computed in advance for its output times, which is expensive.
-    pub const fn is_prepared(self) -> bool {
-        matches!(
-            self,
-            Self::LargeStrain(_) | Self::DynamicColumn | Self::DynamicSingleMode | Self::StandingWave
-        )
     }
 
     /// The reference for a soil: large strain takes the law and the continuity of the soil, so that it solves the equations

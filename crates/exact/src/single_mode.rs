@@ -5,11 +5,17 @@ use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
 use crate::inputs::{COLUMN_KEYS, LAW_KEY, WATER_KEYS};
 use crate::parameters::ColumnParameters;
+use crate::row::Row;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
-/// Study keys that the solution reads.
-pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, WATER_KEYS, LAW_KEY];
+/// The row of the solution.
+pub(crate) static SINGLE_MODE: Row = Row {
+    name: "single-mode",
+    words: "the exact first eigenmode",
+    inputs: &[COLUMN_KEYS, WATER_KEYS, LAW_KEY],
+    ..Row::COLUMN
+};
 
 /// Decay of `p = σ' = p_0 sin(M_0 ζ)`, `M_0 = π/2`, without any load.
 ///

@@ -4,12 +4,25 @@ use crate::consolidation::{consolidated_below, isochrone};
 use crate::exact_error::ExactError;
 use crate::inputs::{COLUMN_KEYS, DRAINAGE_KEY, LAW_KEY, WATER_KEYS, WEIGHT_KEY};
 use crate::parameters::ColumnParameters;
+use crate::row::Row;
 use crate::solution::{Accuracy, FieldValues, Solution};
 
-/// Study keys that the solution reads.
-pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, DRAINAGE_KEY, WATER_KEYS, LAW_KEY, WEIGHT_KEY];
-/// Study keys that the solution reads with incompressible water.
-pub(crate) const INPUTS_INCOMPRESSIBLE: &[&[&str]] = &[COLUMN_KEYS, DRAINAGE_KEY, LAW_KEY, WEIGHT_KEY];
+/// Its row with compressible water.
+pub(crate) static TERZAGHI: Row = Row {
+    name: "terzaghi",
+    words: "Terzaghi's solution with compressible water",
+    inputs: &[COLUMN_KEYS, DRAINAGE_KEY, WATER_KEYS, LAW_KEY, WEIGHT_KEY],
+    adds_up: true,
+    ..Row::COLUMN
+};
+/// Its row with incompressible water.
+pub(crate) static TERZAGHI_INCOMPRESSIBLE: Row = Row {
+    name: "terzaghi-incompressible",
+    words: "Terzaghi's solution",
+    inputs: &[COLUMN_KEYS, DRAINAGE_KEY, LAW_KEY, WEIGHT_KEY],
+    adds_up: true,
+    ..Row::COLUMN
+};
 
 /// Small-strain consolidation of a column that drains at its top alone (Terzaghi 1943).
 ///

@@ -3,13 +3,25 @@
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
 use crate::inputs::{LAW_KEY, WATER_KEYS, WEIGHT_KEY};
 use crate::parameters::ColumnParameters;
+use crate::row::{Changes, Row};
 use crate::solution::{Accuracy, FieldValues, Solution};
 
-/// Study keys that the column at rest reads.
-pub(crate) const INPUTS_AT_REST: &[&[&str]] = &[LAW_KEY, WEIGHT_KEY];
-/// Study keys that the sealed column reads.
-pub(crate) const INPUTS: &[&[&str]] =
-    &[&["height", "load", "youngs_modulus", "poissons_ratio"], WATER_KEYS, LAW_KEY];
+/// The row of the column at rest.
+pub(crate) static AT_REST: Row = Row {
+    name: "at-rest",
+    words: "hydrostatic equilibrium",
+    inputs: &[LAW_KEY, WEIGHT_KEY],
+    changes: Changes::Still,
+    ..Row::COLUMN
+};
+/// The row of the sealed column.
+pub(crate) static SEALED_ELEMENT: Row = Row {
+    name: "sealed-element",
+    words: "the exact sealed column",
+    inputs: &[&["height", "load", "youngs_modulus", "poissons_ratio"], WATER_KEYS, LAW_KEY],
+    changes: Changes::Still,
+    ..Row::COLUMN
+};
 
 /// A column with constant fields: a uniform pressure and effective stress, Pa, and a uniform compression relative to its
 /// height.

@@ -4,12 +4,17 @@ use crate::consolidation::{consolidated_below, isochrone};
 use crate::exact_error::{ExactError, positive};
 use crate::inputs::{COLUMN_KEYS, DRAINAGE_KEY, LAW_KEY, WEIGHT_KEY};
 use crate::parameters::ColumnParameters;
+use crate::row::Row;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
-/// Study keys that the solution reads; of the law, the continuity and the load's growth it takes its own.
-pub(crate) const INPUTS: &[&[&str]] =
-    &[COLUMN_KEYS, DRAINAGE_KEY, LAW_KEY, WEIGHT_KEY, &["porosity", "continuity", "loading_time"]];
+/// The row of the solution.
+pub(crate) static XIE_LEO: Row = Row {
+    name: "xie-leo",
+    words: "Xie & Leo's solution",
+    inputs: &[COLUMN_KEYS, DRAINAGE_KEY, LAW_KEY, WEIGHT_KEY, &["porosity", "continuity", "loading_time"]],
+    ..Row::COLUMN
+};
 
 /// Xie & Leo (2004): consolidation at large strain of a soil with constant
 /// `m_vl = −(1/(1 + e)) de/dσ'` and `k = k_0 J²`, incompressible water.

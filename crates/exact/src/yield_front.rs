@@ -19,12 +19,17 @@ use crate::exact_error::{ExactError, checked_depth, checked_time_factor, normal,
 use crate::inputs::{COLUMN_KEYS, LAW_KEY, WATER_KEYS};
 use crate::numerics::bisected;
 use crate::parameters::ColumnParameters;
+use crate::row::Row;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary::{erf, erfc, exp};
 
-/// Study keys that the solution reads.
-pub(crate) const INPUTS: &[&[&str]] =
-    &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, &["reload_modulus", "preconsolidation", "initial_stress"]];
+/// The row of the solution.
+pub(crate) static YIELD_FRONT: Row = Row {
+    name: "yield-front",
+    words: "the exact yield front",
+    inputs: &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, &["reload_modulus", "preconsolidation", "initial_stress"]],
+    ..Row::COLUMN
+};
 
 /// Relative difference below which two moduli count as equal.
 const EQUAL: f64 = 1e-9;

@@ -4,6 +4,7 @@ use super::world::{Predicted, World};
 use crate::import::SampledState;
 use crate::import::mapping::Mapping;
 use crate::score::coverage::lines;
+use oedometer_exact::row::Axis;
 use oedometer_exact::{ColumnParameters, Reference, ReferenceKind};
 use oedometer_soil::elementary::powi;
 use std::borrow::Cow;
@@ -237,7 +238,8 @@ impl<'a> Given<'a> {
         given.own = World::own(&given).predict_by(solution, &given, &given.times)?;
         let (load, settled) = (parameters.load, parameters.final_settlement());
         // The names of a slab's components: its height lies along x.
-        let [up, along] = if given.kind == ReferenceKind::Mandel { ["u_x", "u_y"] } else { ["u_y", "u_x"] };
+        let [up, along] =
+            if given.kind.row().axis == Axis::AlongSlab { ["u_x", "u_y"] } else { ["u_y", "u_x"] };
         let columns = [
             (Field::Pressure, "p", load),
             (Field::EffectiveStress, "effective_stress", load),

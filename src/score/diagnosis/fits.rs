@@ -5,6 +5,7 @@ use super::hypotheses::{Family, Fitted, NAME, Scale, scales};
 use super::search::{FLOOR, spoils};
 use super::world::World;
 use oedometer_exact::Reference;
+use oedometer_exact::row::Axis;
 use oedometer_soil::elementary::{exp, ln};
 use oedometer_soil::wording::short;
 
@@ -119,7 +120,7 @@ pub fn worlds(family: &Family, given: &Given<'_>, base: &World, in_units: bool) 
     };
     let trial = Trial { given, scales: given.columns.iter().map(units).collect() };
     let names = (family.names)(given);
-    let is_stepped = given.kind.is_prepared();
+    let is_stepped = given.kind.row().is_prepared;
     if family.kind == Fitted::Load || (is_stepped && family.kind == Fitted::Stiffness) {
         let of_name =
             |(factor, asked): &(f64, String)| of(*factor).with(&said(family, given, *factor), asked.clone());
@@ -389,7 +390,7 @@ fn said(family: &Family, given: &Given<'_>, factor: f64) -> String {
 /// A stiffness of so many times the right one as numbers, and as Poisson's ratio; none in layers and in planes.
 fn modulus_told(given: &Given<'_>, ratio: f64) -> Option<(String, Option<String>)> {
     let soil = &given.parameters.soil;
-    let is_plane = given.is_plane() || given.kind == oedometer_exact::ReferenceKind::Mandel;
+    let is_plane = given.is_plane() || given.kind.row().axis == Axis::AlongSlab;
     if is_plane || !given.parameters.soils.is_empty() {
         return None;
     }

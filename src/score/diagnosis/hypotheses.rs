@@ -7,6 +7,7 @@ use super::columns::{Field, Given};
 use super::readings::{Exact, Held, negative, whole};
 use super::world::{Ends, World, with_soils};
 use crate::import::mapping::units::{StressUnit, TimeUnit};
+use oedometer_exact::row::Axis;
 use oedometer_exact::{Reference, ReferenceKind};
 use oedometer_soil::elementary::powi;
 
@@ -334,7 +335,7 @@ const fn change(
 }
 
 fn is_slab(given: &Given<'_>) -> bool {
-    given.kind == ReferenceKind::Mandel
+    given.kind.row().axis == Axis::AlongSlab
 }
 
 /// What all columns may share.
@@ -459,7 +460,7 @@ pub const FAMILIES: &[Family] = &[
     },
     Family {
         kind: Fitted::Moment,
-        is_possible: |given, own| own.is_slow() && !given.kind.is_prepared(),
+        is_possible: |given, own| own.is_slow() && !given.kind.row().is_prepared,
         names: |_| Vec::new(),
         of: |_, own, moment| World { clock: [1.0, moment], ..own },
     },

@@ -237,7 +237,7 @@ fn is_met(need: Need, x: &Exact<'_>, limit: &Limit) -> bool {
     match need {
         Need::OtherRight => limit.is_other_right,
         Need::TwoOutputs => x.column.own_outputs().len() > 1,
-        Need::AnyTime => x.world.is_slow() && !x.given.kind.is_prepared(),
+        Need::AnyTime => x.world.is_slow() && !x.given.kind.row().is_prepared,
         Need::Still => x.column.stands_still(),
         Need::OneSoil => x.world.is_a_column() && x.given.parameters.soils.is_empty(),
         Need::Large => !x.given.is_linear(),

@@ -74,7 +74,7 @@ pub fn same_state(given: &Given<'_>) -> Option<String> {
 /// A time for each output at which all columns match, where the file's own times say nothing.
 fn free_times(given: &Given<'_>) -> Option<Vec<f64>> {
     let world = World::own(given);
-    if !world.is_slow() || given.kind.is_prepared() {
+    if !world.is_slow() || given.kind.row().is_prepared {
         return None;
     }
     let count = given.times.len();

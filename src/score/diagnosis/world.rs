@@ -5,6 +5,7 @@
 use super::columns::{Field, Given};
 use crate::import::SampledState;
 use crate::measure::fields::{ExactFields, SamplePlaces};
+use oedometer_exact::row::Changes;
 use oedometer_exact::{ColumnParameters, Reference, ReferenceKind, ShelfProblem};
 use oedometer_soil::layers::{SoilLayer, SoilLayers};
 
@@ -159,22 +160,12 @@ impl World {
 
     /// Whether the times mean what a diffusion makes of them.
     pub fn is_slow(&self) -> bool {
-        use ReferenceKind::{AtRest, DynamicColumn, DynamicSingleMode, Footing, SealedElement, StandingWave};
-        let still = [AtRest, SealedElement, Footing];
-        let waves = [DynamicColumn, DynamicSingleMode, StandingWave];
-        !(self.kind.is_manufactured() || still.contains(&self.kind) || waves.contains(&self.kind))
+        self.kind.row().changes == Changes::Diffuses
     }
 
     /// Whether a load in parts has the sum of what each part does.
     pub fn adds_up(&self) -> bool {
-        use ReferenceKind::{
-            CosineLayer, CosineLayerIncompressible, Layered, Mandel, Terzaghi, TerzaghiIncompressible,
-        };
-        use ShelfProblem::{Barron, BarronFreeStrain, BiotColumn, Cryer};
-        let shelf = [BiotColumn, Cryer, Barron, BarronFreeStrain].map(ReferenceKind::Shelf);
-        let scenes =
-            [Terzaghi, TerzaghiIncompressible, Layered, CosineLayer, CosineLayerIncompressible, Mandel];
-        scenes.contains(&self.kind) || shelf.contains(&self.kind)
+        self.kind.row().adds_up
     }
 
     /// Whether the body is one column of soil, or of layers, that strains along its height alone and has no weight.

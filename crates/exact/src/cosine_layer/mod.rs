@@ -10,14 +10,29 @@ use crate::cosine_layer::elastic::{Constants, ElasticSolution, Local, Regime};
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, held_within, positive};
 use crate::inputs::{COLUMN_KEYS, LAW_KEY, WATER_KEYS};
 use crate::parameters::{Base, ColumnParameters, Water};
+use crate::row::{Axis, Row};
 use crate::solution::{Accuracy, FieldValues, Solution};
 use crate::talbot::{NODES, talbot_contour};
 use oedometer_soil::elementary;
 
-/// Study keys that the solution reads.
-pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, &["length", "base"]];
-/// Study keys that the solution reads with incompressible water.
-pub(crate) const INPUTS_INCOMPRESSIBLE: &[&[&str]] = &[COLUMN_KEYS, LAW_KEY, &["length", "base"]];
+/// Its row with compressible water.
+pub(crate) static COSINE_LAYER: Row = Row {
+    name: "cosine-layer",
+    words: "the exact layer with compressible water",
+    inputs: &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, &["length", "base"]],
+    axis: Axis::InPlane,
+    adds_up: true,
+    ..Row::COLUMN
+};
+/// Its row with incompressible water.
+pub(crate) static COSINE_LAYER_INCOMPRESSIBLE: Row = Row {
+    name: "cosine-layer-incompressible",
+    words: "the exact layer with incompressible water",
+    inputs: &[COLUMN_KEYS, LAW_KEY, &["length", "base"]],
+    axis: Axis::InPlane,
+    adds_up: true,
+    ..Row::COLUMN
+};
 
 /// `B T_v` from which on the slowest mode is below round-off, and the contour so near the origin
 /// that flow and stress can hardly be told apart.

@@ -16,15 +16,38 @@ use crate::dynamic_column::summation::{BLOCK, Waves};
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
 use crate::inputs::{COLUMN_KEYS, LAW_KEY, WATER_KEYS, WEIGHT_KEY};
 use crate::parameters::ColumnParameters;
+use crate::row::{Changes, Row};
 use crate::single_mode::PhaseVelocities;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
-/// Study keys that the solution reads if the column is released.
-pub(crate) const INPUTS_RELEASED: &[&[&str]] = &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, &["grain_density"]];
-/// Study keys that the solution reads under a load.
-pub(crate) const INPUTS: &[&[&str]] =
-    &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, WEIGHT_KEY, &["grain_density", "loading_time"]];
+/// Its row under a load.
+pub(crate) static DYNAMIC_COLUMN: Row = Row {
+    name: "dynamic-column",
+    words: "the exact column with inertia",
+    inputs: &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, WEIGHT_KEY, &["grain_density", "loading_time"]],
+    is_prepared: true,
+    changes: Changes::Waves,
+    ..Row::COLUMN
+};
+/// Its row of a mode.
+pub(crate) static DYNAMIC_SINGLE_MODE: Row = Row {
+    name: "dynamic-single-mode",
+    words: "the exact first eigenmode with inertia",
+    inputs: &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, &["grain_density"]],
+    is_prepared: true,
+    changes: Changes::Waves,
+    ..Row::COLUMN
+};
+/// Its row of an undrained wave.
+pub(crate) static STANDING_WAVE: Row = Row {
+    name: "standing-wave",
+    words: "the exact standing wave",
+    inputs: &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, &["grain_density"]],
+    is_prepared: true,
+    changes: Changes::Waves,
+    ..Row::COLUMN
+};
 
 /// Both phases' fields at one depth and time.
 #[derive(Clone, Copy, Debug, PartialEq)]

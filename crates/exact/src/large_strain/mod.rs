@@ -16,11 +16,24 @@ use crate::large_strain::layers::{Layers, Profile};
 use crate::large_strain::march::{March, State};
 use crate::large_strain::similarity::Front;
 use crate::parameters::ColumnParameters;
+use crate::row::Row;
 use crate::solution::{Accuracy, FieldValues, Solution};
 
-/// Study keys that the solution reads.
-pub(crate) const INPUTS: &[&[&str]] =
-    &[COLUMN_KEYS, DRAINAGE_KEY, WATER_KEYS, LAW_KEY, WEIGHT_KEY, &["continuity", "loading_time", "soils"]];
+/// The row of the solution.
+pub(crate) static LARGE_STRAIN: Row = Row {
+    name: "large-strain",
+    words: "the exact large-strain solution of its own equations",
+    inputs: &[
+        COLUMN_KEYS,
+        DRAINAGE_KEY,
+        WATER_KEYS,
+        LAW_KEY,
+        WEIGHT_KEY,
+        &["continuity", "loading_time", "soils"],
+    ],
+    is_prepared: true,
+    ..Row::COLUMN
+};
 
 /// Resolutions: points in depth and growth of the time step. Each is held against the one before.
 const RESOLUTIONS: [(usize, f64); 5] = [(14, 0.45), (20, 0.3), (30, 0.22), (44, 0.15), (64, 0.1)];

@@ -15,11 +15,19 @@ pub use crate::mandel::sums::MandelRatios;
 use crate::mandel::sums::{Groups, early, series};
 use crate::parameters::ColumnParameters;
 use crate::porous_soil::PorousSoil;
+use crate::row::{Axis, Row};
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
-/// Study keys that the solution reads.
-pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, BIOT_KEYS, LAW_KEY, &["width"]];
+/// The row of the solution.
+pub(crate) static MANDEL: Row = Row {
+    name: "mandel",
+    words: "Mandel's solution with compressible water",
+    inputs: &[COLUMN_KEYS, BIOT_KEYS, LAW_KEY, &["width"]],
+    axis: Axis::AlongSlab,
+    adds_up: true,
+    ..Row::COLUMN
+};
 
 /// `T = B_1 T_v` from which on a handful of terms of the series is exact to round-off; the closed form
 /// leaves out `e^{−1/T}`, 2e-22 there.

@@ -17,26 +17,35 @@ pub mod motion_state;
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
 use crate::inputs::LAW_KEY;
 use crate::manufactured::dual::PLACES;
-use crate::manufactured::motion::{ManufacturedModel, Moment, Spot, Spots};
+use crate::manufactured::motion::{ManufacturedModel, Moment, Motion, Spot, Spots};
 use crate::manufactured::motion_state::{Soil, State, States};
 use crate::parameters::ColumnParameters;
+use crate::row::{Axis, Changes, Row};
 use crate::solution::{Accuracy, FieldValues, Solution};
 use std::f64::consts::PI;
 
-/// Study keys that the solution reads.
-pub(crate) const INPUTS: &[&[&str]] = &[
-    LAW_KEY,
-    &[
-        "youngs_modulus",
-        "poissons_ratio",
-        "porosity",
-        "amplitude_x",
-        "amplitude_y",
-        "amplitude",
-        "frequency",
-        "pressure",
-    ],
-];
+/// The row of a motion by its name.
+const fn row(name: &'static str) -> Row {
+    let inputs: &'static [&'static [&'static str]] = &[
+        LAW_KEY,
+        &[
+            "youngs_modulus",
+            "poissons_ratio",
+            "porosity",
+            "amplitude_x",
+            "amplitude_y",
+            "amplitude",
+            "frequency",
+            "pressure",
+        ],
+    ];
+    let words = "the manufactured solution";
+    Row { name, words, inputs, axis: Axis::InPlane, changes: Changes::AsPrescribed, ..Row::COLUMN }
+}
+
+/// The rows of the motions.
+pub(crate) static ROWS: [Row; 3] =
+    [row(Motion::Box.name()), row(Motion::Shear.name()), row(Motion::Vortex.name())];
 
 /// Intervals of the grid on which volume ratios are checked.
 const GRID: u32 = 40;

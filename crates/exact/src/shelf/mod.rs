@@ -24,6 +24,7 @@ mod terms;
 
 use crate::exact_error::ExactError;
 use crate::parameters::ColumnParameters;
+use crate::row::Row;
 use crate::solution::Solution;
 use barron::{Barron, BarronFreeStrain};
 use biot::BiotColumn;
@@ -65,17 +66,25 @@ impl core::fmt::Display for ShelfProblem {
     }
 }
 
+/// The rows of the problems, in their order.
+static ROWS: [Row; 7] = [
+    row(ShelfProblem::BiotColumn, biot::INPUTS, true),
+    row(ShelfProblem::Cryer, cryer::INPUTS, true),
+    row(ShelfProblem::Barron, barron::INPUTS, true),
+    row(ShelfProblem::BarronFreeStrain, barron::INPUTS, true),
+    row(ShelfProblem::Seabed, seabed::INPUTS, false),
+    row(ShelfProblem::Injection, injection::INPUTS, false),
+    row(ShelfProblem::DavisRaymond, davis_raymond::INPUTS, false),
+];
+
+const fn row(problem: ShelfProblem, inputs: &'static [&'static [&'static str]], adds_up: bool) -> Row {
+    Row { name: problem.name(), inputs, adds_up, ..Row::COLUMN }
+}
+
 impl ShelfProblem {
-    /// Study keys that the solution reads.
-    pub(crate) const fn inputs(self) -> &'static [&'static [&'static str]] {
-        match self {
-            Self::BiotColumn => biot::INPUTS,
-            Self::Cryer => cryer::INPUTS,
-            Self::Barron | Self::BarronFreeStrain => barron::INPUTS,
-            Self::Seabed => seabed::INPUTS,
-            Self::Injection => injection::INPUTS,
-            Self::DavisRaymond => davis_raymond::INPUTS,
-        }
+    /// What is known of it whatever its parameters.
+    pub(crate) const fn row(self) -> &'static Row {
+        &ROWS[self as usize]
     }
 
     /// Its solution for a column.
