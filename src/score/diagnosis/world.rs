@@ -6,7 +6,7 @@ use super::columns::{Field, Given};
 use crate::import::SampledState;
 use crate::measure::fields::{ExactFields, SamplePlaces};
 use oedometer_exact::row::Changes;
-use oedometer_exact::{ColumnParameters, Reference, ReferenceKind, ShelfProblem};
+use oedometer_exact::{ColumnParameters, Reference, ReferenceKind};
 use oedometer_soil::layers::{SoilLayer, SoilLayers};
 
 /// Time factors before which nothing has drained that samples show, and after which nothing changes.
