@@ -392,6 +392,27 @@ mod tests {
     }
 
     #[test]
+    fn the_jump_that_is_told_needs_the_widest_tolerance_wherever_it_stands() {
+        let samples = ["points", "centres", "nodes"];
+        let values = |all: [f64; 3]| -> BTreeMap<GoldenKey, f64> {
+            samples.map(|sample| error(4, sample)).into_iter().zip(all).collect()
+        };
+        let file = GoldenFile { values: values([1.0; 3]), ..GoldenFile::of("study", &[], "a reason") };
+        assert_eq!(file.jump(&[(LastDigit::Stiffness, values([1.0 + 1e-9; 3]))]), None);
+        for widest in 0..3 {
+            let mut all = [1.01, 1.02, 1.03];
+            all[widest] = 1.2;
+            let digits = [
+                (LastDigit::Stiffness, values([1.0; 3])),
+                (LastDigit::Conductivity, values(all)),
+                (LastDigit::Stiffness, values([1.05; 3])),
+            ];
+            let jump = file.jump(&digits).expect("far off");
+            assert_eq!((jump.key, jump.digit), (error(4, samples[widest]), LastDigit::Conductivity));
+        }
+    }
+
+    #[test]
     fn a_spread_is_kept_where_it_widens_the_tolerance_of_any_of_its_values() {
         for (sizes, change, is_kept) in [
             ([0.0, 1.0], 0.9e-11, false),

@@ -294,6 +294,8 @@ mod tests {
                 let at = |depth: f64| solution.fields_after(seconds, depth).unwrap().displacement;
                 let strain = (at(depth + step) - at(depth - step)) / (2.0 * step);
                 let stress = column.load - solution.pressure(seconds, depth);
+                let in_all = solution.fields_after(seconds, depth).unwrap().effective_stress;
+                assert!((in_all + stress + column.uniform_stress).abs() < 1e-9 * column.load, "{in_all:e}");
                 let elastic = stress.min(column.soil.preconsolidation - column.uniform_stress);
                 let expected = elastic / 6e6 + (stress - elastic) / 1.2e6;
                 assert!((strain / expected - 1.0).abs() < 1e-6, "{seconds} {depth}: {strain:e} {expected:e}");

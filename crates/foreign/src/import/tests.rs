@@ -239,6 +239,15 @@ fn a_column_that_is_missing_is_told_with_the_first_thirty_there_are() {
     let named =
         states("[columns]\ny = \"y\"\np = \"p\"\nu_y = \"\"\n", "t,y,p\n2,0.5,3\n").expect("a column `t`");
     assert_eq!(named[0].time, 2.0);
+    // Of several names the first that is there, in their order.
+    let named = |p: &str| {
+        let mapping = CONVENTION.replace("p = \"p\"", &format!("p = \"{p}\""));
+        states(&mapping, "t,y,q,p0,u_y\n1,0.5,3,7,0\n").map(|states| states[0].pressure[0])
+    };
+    for (names, value) in [("p0", 7.0), ("p|p0", 7.0), ("q | p0", 3.0), ("p0|q", 7.0), ("p|r|q", 3.0)] {
+        assert_eq!(named(names), Ok(value), "{names}");
+    }
+    assert!(named("p|r").is_err_and(|told| told.contains("there is no column `p|r`")));
     // Rows that do not count are none, and rows of one value alone do.
     let rows = "t,y,p,u_y,layer\n1,0.25,3,0,1\n1,0.5,4,0,2\n1,0.75,5,0,1\n";
     let of = |layer: &str| states(&format!("{CONVENTION}[rows]\nequals = {{ layer = {layer} }}\n"), rows);

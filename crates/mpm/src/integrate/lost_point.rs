@@ -35,3 +35,32 @@ pub fn pores_closed(point: usize, ratio: f64, grains: f64) -> StepFailure {
     let reason = format!("point {point} has J = {ratio:.4}, its grains alone fill {grains:.4}");
     StepFailure { kind: FailureKind::PoresClosed, reason }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::column_problem;
+    use oedometer_problem::method::Method;
+    use oedometer_scenes::TERZAGHI;
+    use oedometer_scenes::column::Column;
+    use oedometer_soil::material::Material;
+
+    #[test]
+    fn a_point_outside_the_grid_is_lost_whichever_and_on_either_side() {
+        let method = Method::named("GIMP").expect("known");
+        let problem = column_problem::<1>(&TERZAGHI, &Column::default(), &Material::default(), method, 4, 2)
+            .expect("a column");
+        let sound = Body::new(problem);
+        assert!(lost_point(&sound).is_none());
+        for point in [0, 3, 7] {
+            for place in [-1e3, 1e3] {
+                let mut body = sound.clone();
+                body.points.position[point] = [place];
+                let lost = lost_point(&body).expect("a point that left");
+                assert!(
+                    lost.kind == FailureKind::LeftGrid && lost.reason.contains(&format!("point {point} "))
+                );
+            }
+        }
+    }
+}
