@@ -134,6 +134,20 @@ fn shares_without_a_result_are_submitted_as_often_as_told_and_then_given_up() {
 }
 
 #[test]
+fn what_is_missing_of_any_study_of_a_campaign_is_counted() {
+    let cluster = Cluster::new(4, "COMPLETED", NOTHING);
+    let at = cluster.folder.path();
+    fs::write(at.join("other.toml"), STUDY.replace("[3, 4]", "[5, 6]")).expect("a file");
+    for studies in [["short.toml", "other.toml"], ["other.toml", "short.toml"]] {
+        let words = ["--engine", "slurm", "--tasks", "3", "--attempts", "1"];
+        let words = [&["run"], &studies[..], &words].concat();
+        let told = call_with(at, &[("PATH", cluster.path.as_str())], &words);
+        let is_counted = told.err.contains("8 cases are without a result after 1 submission");
+        assert!(told.code == 6 && is_counted, "{}", told.err);
+    }
+}
+
+#[test]
 fn tasks_that_somebody_cancelled_are_not_submitted_again() {
     let cluster = Cluster::new(4, "CANCELLED by 0", NOTHING);
     let cancelled = "the tasks were cancelled; run the command again to submit what is missing".to_owned();
