@@ -188,7 +188,7 @@ fn over_time(audit: &Audit) -> Figure {
     let series = |pairing: &Pairing| Series::new(pairing.name(), pairing.settlement.clone());
     chart.series.extend(audit.pairings.iter().map(series));
     chart.rules.push(Rule { at: 0.0, label: "Xie & Leo".to_owned() });
-    Figure::new("audit-settlement", chart, "Zero is Xie & Leo's column.")
+    Figure::new("audit-settlement", chart, "Zero is Xie & Leo's solution.")
 }
 
 fn over_mesh(audit: &Audit) -> Figure {
@@ -212,8 +212,8 @@ fn over_mesh(audit: &Audit) -> Figure {
     });
     let steepest = falls.max_by(|a, b| a.0.total_cmp(&b.0));
     chart.triangles.extend(steepest.map(|(_, beside)| SlopeTriangle { slope: 2.0, beside }));
-    let caption = "The error of the right equations falls with every mesh; that of wrong ones stops at the difference of the two \
-                   theories. Triangle: second order.";
+    let caption = "With the right equations the error falls with every mesh; with wrong ones it stops at \
+                   the difference between the two theories. Triangle: second order.";
     Figure::new("audit-pressure", chart, caption)
 }
 

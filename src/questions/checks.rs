@@ -108,11 +108,12 @@ fn measures(records: &[Record]) -> Option<Table> {
     let header = "case | measure | > T_v | > found | > exact | > error";
     let table = Table::of("Measures beside the errors", columns(header), rows)
         .file("measures")
-        .note("the worst output of each run; `T_v` is empty where a measure is of the whole run")
+        .note("the worst output of each run; `T_v` is empty where a measure covers the whole run")
         .note(
-            "spurious_velocity: largest nodal velocity over the hydraulic conductivity; pore_water: water in the soil over \
-             its pores, less one; largest_pressure: of any water point since the start, over the load, where 1 is what \
-             consolidation begins with at most; the error is relative where the exact value is not zero",
+            "spurious_velocity: largest nodal velocity over the hydraulic conductivity; pore_water: volume \
+             of the water in the soil over that of its pores, minus one; largest_pressure: of any water \
+             point since the start, over the load (consolidation begins with at most 1); the error is \
+             relative where the exact value is not zero",
         );
     table.unless_empty()
 }

@@ -87,8 +87,8 @@ fn table(records: &[Record]) -> Table {
         std::iter::once(setup.into()).chain(runners.iter().map(end)).collect()
     });
     Table::of("How each case ended", columns, rows).file("ends").note(
-        "a number is the relative L_2 error of the pressure at the points at the last output, ✗ where it is as large \
-         as the answer; ✗ with the name of a failure and its step",
+        "a number is the relative L_2 error of the pressure at the points at the last output, with ✗ if it \
+         is as large as the solution; a failed case has ✗, the name of the failure and its step",
     )
 }
 

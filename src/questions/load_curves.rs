@@ -83,7 +83,7 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
     let figure = Figure::new(
         "load-settlement",
         chart,
-        "The line of a method that locks leaves the figure at its top.",
+        "The line of a method that locks leaves the figure at the top.",
     );
     Some(LOAD_CURVES.answer([one.study.name.as_str()], &facts).with(Block::Figures(vec![figure])))
 }

@@ -107,8 +107,8 @@ mod tests {
         let answer = found(&records).expect("three");
         assert_eq!(
             answer.sentence().expect("a sentence"),
-            "1 of 3 runs of attached solvers ended well. 1 took more than 2 times their processor time: the machine was \
-             busy or they waited, so compare processor times."
+            "1 of 3 runs of attached solvers succeeded. The wall time of 1 exceeds 2 times the processor \
+             time: the machine was busy or the solver waited, so compare processor times."
         );
         let table = answer.tables()[0];
         let ends: Vec<String> = table.rows.iter().map(|row| row[1].show()).collect();

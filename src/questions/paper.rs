@@ -92,9 +92,13 @@ fn table_of_equations(printed: &PublishedEquations) -> Table {
         vec![Cell::Number(time), Cell::Percent(settlement), Cell::Percent(pressure)]
     });
     let header = "> T_v | > settlement, difference | > pressure, relative L_2 difference";
-    Table::of("The equations as printed, before any mesh, against Xie & Leo's", columns(header), rows)
-        .file("printed-equations")
-        .note("porosity-dependent law, constant porosity gradient")
+    Table::of(
+        "The equations as printed, before any discretisation, against Xie & Leo's",
+        columns(header),
+        rows,
+    )
+    .file("printed-equations")
+    .note("porosity-dependent law, constant porosity gradient")
 }
 
 /// The size of one figure of four in a row, which a phone shows too.

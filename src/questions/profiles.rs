@@ -21,7 +21,7 @@ use oedometer_scenes::scene::{Clock, Question as SceneQuestion};
 /// How does the pressure fall?
 pub static PROFILES: Question = Question {
     id: "profiles",
-    heading: "How does the pressure fall?",
+    heading: "How does the pressure dissipate?",
     template: include_str!("profiles.md"),
     places: &[Place::Study],
     ask,

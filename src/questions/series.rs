@@ -266,7 +266,7 @@ impl<'a> SeriesTable<'a> {
         row.extend(one.errors.iter().map(|error| match error {
             LevelError::Measured(error) => Cell::Error(*error),
             LevelError::NotMeasured => Cell::missing("no error was measured"),
-            LevelError::NotAsked => Cell::missing("not asked for at this time"),
+            LevelError::NotAsked => Cell::missing("not requested at this time"),
             LevelError::Failed => Cell::missing("the run failed"),
             LevelError::NotRun => Cell::missing("not run"),
         }));
@@ -295,7 +295,7 @@ impl<'a> SeriesTable<'a> {
             ])
         });
         let columns = crate::render::table::columns("method | error of | > floor | what lowers it");
-        Table::of("Errors that end in a floor", columns, rows).shown(SHOWN_ROWS).unless_empty()
+        Table::of("Errors that reach a plateau", columns, rows).shown(SHOWN_ROWS).unless_empty()
     }
 }
 

@@ -69,7 +69,7 @@ pub fn figure(found: &SeriesTable<'_>, measured: Measured) -> Option<Figure> {
     chart.rules.extend(floor.map(|(at, line)| {
         let whose = line.map_or("all series", |line| &names[line]);
         let cause = found.model_difference.map_or_else(String::new, |cause| format!(": {cause}"));
-        Rule { at, label: format!("floor of {whose}{cause}") }
+        Rule { at, label: format!("plateau of {whose}{cause}") }
     }));
     let part = match all.len() - lines.len() {
         0 => String::new(),

@@ -206,12 +206,15 @@ pub fn table(records: &[Record]) -> Table {
     let header = "case | > predicted [s] | > observed [s] | > difference | > over h/c | > slow growth from [s] | at 0.97 \
                   | at 1.03";
     let rows = records.iter().filter_map(row_of);
-    Table::of("Critical time step, predicted and observed", columns(header), rows).file("critical-steps").note(
-        "predicted: spectral radius of the step operator on the case's own grid; observed: bisection of runs without the \
-         prediction, and in a plane of up to 8 × 8 cells of the eigenvalues of its own step, which show a doubling in \
-         10 000 steps; where points deform, the smallest predicted of the run and the largest share of it that `solve` runs; c: the \
-         fastest undamped wave",
-    )
+    Table::of("Critical time step, predicted and observed", columns(header), rows)
+        .file("critical-steps")
+        .note(
+            "predicted: from the spectral radius of the step operator on the case's own grid; observed: by \
+         bisection over runs without the prediction, and in a plane of up to 8 × 8 cells over the \
+         eigenvalues of its own step, which show a doubling in 10 000 steps; where points deform, the \
+         smallest step predicted during the run and the largest fraction of it with which `solve` succeeds; \
+         c: the fastest undamped wave",
+        )
 }
 
 fn row_of(record: &Record) -> Option<Vec<Cell>> {
@@ -298,7 +301,8 @@ mod tests {
                 });
             }
             let found = ask(&[StudyResults::new(&study, &records, Tier::Full)]).expect("searched");
-            let told = "Of 3 cases 3 have a predicted and an observed step, which differ by at most 40.00 %.";
+            let told = "3 of 3 cases have both a predicted and an observed critical step; they differ by at \
+                        most 40.00 %.";
             assert_eq!(found.sentence().expect("a sentence"), told, "{worst} at {place}");
         }
     }

@@ -38,11 +38,11 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
 pub fn table_of(judgements: &[Judgement]) -> Option<Table> {
     let header = "value | > levels | > finest | behaviour | > order | > extrapolated | > uncertainty";
     let rows = judgements.iter().filter_map(row_of);
-    let title = "values without a reference and their numerical uncertainty";
+    let title = "values without a reference, and their numerical uncertainty";
     let table = Table::of(title, columns(header), rows).file("uncertainty").note(
-        "settlement over the final one of small strain, pressure and stress over the load; behaviour and order of the \
-         finest three levels; uncertainty over the finest value: the grid convergence index of three levels (Celik et al. \
-         2008), by least squares of four and more (Eça & Hoekstra 2014)",
+        "settlement over the final small-strain one, pressure and stress over the load; behaviour and order \
+         of the finest three levels; uncertainty over the finest value: the grid convergence index for \
+         three levels (Celik et al. 2008), least squares for four and more (Eça & Hoekstra 2014)",
     );
     table.unless_empty()
 }

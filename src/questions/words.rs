@@ -13,12 +13,12 @@ pub const COUNTED_WORK: &str = "counted operations times their calibrated times"
 /// The words beside an order that is not settled, or instead of one, with their meanings.
 const CLASSES: [(&str, &str); 8] = [
     ("pre-asymptotic", "the order still changes from mesh to mesh"),
-    ("contaminated", "a term of lower order takes over on fine meshes"),
-    ("superconvergent", "higher than promised"),
+    ("contaminated", "a term of lower order dominates on fine meshes"),
+    ("superconvergent", "above the formal order"),
     ("oscillatory", "the error goes up and down"),
     ("divergent", "the error grows"),
-    ("floor-limited", "something else than the mesh limits the error"),
-    ("exact", "round-off is all the error there is"),
+    ("floor-limited", "something other than the mesh limits the error"),
+    ("exact", "the error is round-off only"),
     ("locked", "the body hardly moves"),
 ];
 

@@ -75,8 +75,7 @@ fn carriers_table(record: &Record, explanation: &Explanation) -> Table {
         rows,
     )
     .note(format!(
-        "relative errors against {reference}, the largest first; settlement as s/s_exact − 1; values in \
-             Pa and m"
+        "relative errors against {reference}, largest first; settlement as s/s_exact − 1; values in Pa and m"
     ));
     table.notes(attached_notes(record, explanation.outside_run.as_ref()))
 }
