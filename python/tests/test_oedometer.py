@@ -150,7 +150,7 @@ def test_fields_over_distances():
     slab = oedometer.exact("mandel", 0.1, x=[0.0, 1.0])
     assert slab.pressure[0] > 0.1 and abs(slab.pressure[1]) < 1e-12
     for call, told in [
-        (lambda: oedometer.exact("terzaghi", 0.1, 0.5, x=0.5), "depends on the depth alone"),
+        (lambda: oedometer.exact("terzaghi", 0.1, 0.5, x=0.5), "depends only on depth"),
         (lambda: oedometer.exact("mandel", 0.1, 0.5), "give `x`"),
         (lambda: oedometer.exact("mandel", 0.1, x=1.5), "got 1.5"),
         (lambda: oedometer.exact("terzaghi", 0.1), "give depths"),

@@ -80,9 +80,7 @@ pub fn exact(
         let places = places_of(&reference, &parameters, *time_factor, depths, distances)?;
         let places = places.ok_or_else(|| {
             let name = reference.name();
-            ApiError::Unfit(format!(
-                "`x` is for layers and `mandel`, and `{name}` depends on the depth alone"
-            ))
+            ApiError::Unfit(format!("`x` is for layers and `mandel`, and `{name}` depends only on depth"))
         })?;
         for Place { pressure, effective_stress, displacement, .. } in places {
             let (effective_stress, [horizontal, displacement]) = (effective_stress[1], displacement);
@@ -240,7 +238,7 @@ mod tests {
             ("mandel", &[0.5], &[0.5], "give `x`"),
             ("mandel", &[], &[1.5], "1.5"),
             ("mandel", &[], &[-0.5], "-0.5"),
-            ("terzaghi", &[0.5], &[0.5], "depends on the depth alone"),
+            ("terzaghi", &[0.5], &[0.5], "depends only on depth"),
             ("terzagi", &[0.5], &[], "there is no exact solution `terzagi`"),
         ] {
             let error = exact(solution, &[0.1], depths, x, &[]).expect_err(solution).to_string();

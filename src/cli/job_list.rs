@@ -90,7 +90,7 @@ impl JobList {
         );
         if balance.longest_case > balance.mean {
             say!(
-                "one case alone takes {}, more than a shard of {}: more than {:.0} shards gain nothing",
+                "one case alone takes {}, more than a shard of {}: more than {:.0} shards bring no gain",
                 duration(balance.longest_case),
                 duration(balance.mean),
                 (balance.mean * self.tasks as f64 / balance.longest_case).max(1.0).floor()

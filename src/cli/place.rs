@@ -64,7 +64,7 @@ pub fn named(given: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
             if studies.is_empty() {
                 let shown = path.display();
                 return Err(Ended::usage(format!(
-                    "the folder {shown} has no study: `oedometer new {}` writes one there",
+                    "the folder {shown} contains no study: `oedometer new {}` writes one there",
                     path.join("my-study").display()
                 )));
             }
@@ -96,7 +96,7 @@ pub fn studies_of_this_project() -> anyhow::Result<Vec<PathBuf>> {
     folders.find_map(|folder| Some(studies_in(&folder)).filter(|studies| !studies.is_empty())).ok_or_else(
         || {
             let why = "there is no study in this folder, in its `studies/` or in a project above: name one, \
-                   `oedometer new my-study` writes one, and `--shipped` takes the built-in ones";
+                       write one with `oedometer new my-study`, or use `--shipped` for the built-in ones";
             Ended::with(Exit::NothingSelected, why)
         },
     )
@@ -211,7 +211,7 @@ pub fn repository_with(golden: Option<&Path>, studies: &[String]) -> anyhow::Res
     })?;
     let folder = inside.to_string_lossy().trim_end_matches('/').replace('\\', "/");
     if repository.is_dirty(&["--", &folder]) {
-        say!("{folder}/ has uncommitted changes, which no revision has");
+        say!("{folder}/ has uncommitted changes, which no revision contains");
     }
     Ok((repository, folder))
 }
@@ -244,7 +244,7 @@ fn only_golden_folder(repository: &Repository, root: &Path, studies: &[String]) 
             let several: Vec<String> =
                 several.iter().map(|folder| format!("--golden {}", root.join(folder).display())).collect();
             Err(Ended::usage(format!(
-                "golden values lie in {} folders: give one of them, {}",
+                "golden values are in {} folders: give one of them, {}",
                 several.len(),
                 several.join(" or ")
             )))
@@ -334,7 +334,9 @@ mod tests {
         let shown = empty.display();
         assert_eq!(
             told,
-            format!("the folder {shown} has no study: `oedometer new {shown}/my-study` writes one there")
+            format!(
+                "the folder {shown} contains no study: `oedometer new {shown}/my-study` writes one there"
+            )
         );
     }
 }

@@ -134,11 +134,11 @@ fn note_with(longest: &LongestCase, take: impl Fn(&str) -> String) -> Option<Str
         Some(other) => {
             format!("; {}: {}", take(other.integrator.name()), duration(estimated_seconds(&other)))
         }
-        None if case.task == Task::Stability => "; an earlier last `time_factors` takes less".to_owned(),
-        None => "; larger steps, fewer cells or an earlier last `time_factors` take less".to_owned(),
+        None if case.task == Task::Stability => "; an earlier last output takes less".to_owned(),
+        None => "; larger steps, fewer cells or an earlier last output take less".to_owned(),
     };
     let end = if seconds > LONGEST_ALLOWED.max(*case_seconds) {
-        ", longer than a week: such a case is refused".to_owned()
+        ", longer than a week: the case is refused".to_owned()
     } else if *case_seconds < seconds {
         format!("; the case is stopped after {} (`case_seconds = {case_seconds}`)", duration(*case_seconds))
     } else {
@@ -189,13 +189,13 @@ mod tests {
     #[test]
     fn no_scene_of_waves_is_sent_to_long_steps() {
         let note = note_on_longest(&longest(&DYNAMIC_COLUMN, IntegratorKind::Explicit, 1e-7));
-        let remedy = "; larger steps, fewer cells or an earlier last `time_factors` take less";
+        let remedy = "; larger steps, fewer cells or an earlier last output take less";
         assert!(note.is_some_and(|note| !note.contains("implicit") && note.contains(remedy)));
         let mut search = longest(&TERZAGHI, IntegratorKind::Explicit, 1e-7);
         (search.case.task, search.case.cells) = (Task::Stability, 100_000);
         search.case_seconds = f64::INFINITY;
         let note = note_on_longest(&search).expect("it is long");
-        assert!(note.ends_with("; an earlier last `time_factors` takes less"), "{note}");
+        assert!(note.ends_with("; an earlier last output takes less"), "{note}");
     }
 
     #[test]

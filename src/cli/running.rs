@@ -196,7 +196,7 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
     }
     if let Some(differences) = report.origins.differences_from(&Provenance::of_this_program()) {
         say!(
-            "{}: records of other builds of these sources were reused, their values are the same: {differences}",
+            "{}: records of other builds of the same sources were reused; their values are the same: {differences}",
             study.name
         );
     }

@@ -43,7 +43,7 @@ pub fn read_each(paths: &[PathBuf]) -> Vec<anyhow::Result<StudySource>> {
         }
         if let Some(other) = names.iter().find(|other| name_of(other) == name) {
             return Err(Ended::usage(format!(
-                "{other} and {} are both called `{name}`, and one would overwrite the results of the other: rename one",
+                "{other} and {} are both called `{name}`, and one would overwrite the other's results: rename one",
                 source.name
             )));
         }
@@ -235,7 +235,7 @@ pub fn write_tables(
     })?;
     let foreign = foreign.into_inner();
     if foreign > 0 {
-        say!("{}: {foreign} older records in the table are of other sources", study.name);
+        say!("{}: {foreign} older records in the table come from other sources", study.name);
     }
     for long in LongTable::ALL.into_iter().filter(|_| is_small(study)) {
         write(long.name(), long.header_line(), &|record| long.rows_of(record))?;

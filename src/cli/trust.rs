@@ -80,7 +80,7 @@ pub fn end_with(tally: Tally, otherwise: Exit) -> Exit {
         return otherwise;
     }
     let cases = count_of(tally.held_back, "case was", "cases were");
-    say!("{cases} not run: their programs may not be started without `--allow-solvers`");
+    say!("{cases} not run: their programs must not be started without `--allow-solvers`");
     if otherwise == Exit::Pass { Exit::IncompleteMerge } else { otherwise }
 }
 

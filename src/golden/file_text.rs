@@ -275,7 +275,7 @@ mod tests {
             format!("line {steps}: `many` under `steps` is not a number")
         );
         let told = refused(",0.05,", ",0.0000001,");
-        let twice = "`pressure points terzaghi` is given twice for this case and time factor";
+        let twice = "`pressure points terzaghi` occurs twice for this case and time factor";
         assert_eq!(told, format!("line {}: {twice}", line_of(",0.05,")));
         let told = refused(",0.05,", ",soon,");
         assert_eq!(told, format!("line {}: `soon` under `T_v` is not a number", line_of(",0.05,")));
@@ -291,6 +291,6 @@ mod tests {
         assert_eq!(refused("# reason", "# season"), "line 2: it is not `# reason: WHY`");
         assert!(refused("case,hash", "case,hush").contains("`case`, `hash`, `T_v`"));
         let cut = GoldenFile::from_text(&text[..text.len() - 2]).expect_err("refused").to_string();
-        assert_eq!(cut, format!("line {}: the file ends within it", text.lines().count()));
+        assert_eq!(cut, format!("line {}: the file ends within this line", text.lines().count()));
     }
 }

@@ -68,7 +68,8 @@ type Cause = Box<dyn std::error::Error + Send + Sync>;
 pub enum GoldenError {
     /// The file does not exist.
     #[error(
-        "there are no golden values yet ({0}): if the results look right, `oedometer accept` them with a reason"
+        "there are no golden values yet ({0}): if the results look right, accept them with `oedometer \
+         accept` and a reason"
     )]
     Missing(PathBuf),
     /// The file cannot be read or written, or allows what no golden file may.
@@ -226,7 +227,11 @@ impl GoldenFile {
             GoldenError::caused(&path, UNREADABLE, error, Some(remedy))
         })?;
         if file.study != study {
-            return Err(GoldenError::refused(&path, UNREADABLE, format!("it is of study `{}`", file.study)));
+            return Err(GoldenError::refused(
+                &path,
+                UNREADABLE,
+                format!("it is for the study `{}`", file.study),
+            ));
         }
         match file.out_of_bounds() {
             Some(reason) => Err(GoldenError::refused(&path, "is refused", reason)),
@@ -337,7 +342,7 @@ mod tests {
             assert_eq!(own, GoldenFile::read(&root, study).expect("in the repository"), "{study}");
         }
         let told = GoldenFile::read_or_embedded(nowhere, "no-such-study").expect_err("no file").to_string();
-        let what = "if the results look right, `oedometer accept` them with a reason";
+        let what = "if the results look right, accept them with `oedometer accept` and a reason";
         assert_eq!(told, format!("there are no golden values yet (nowhere/no-such-study.csv): {what}"));
         // A file of one's own goes before the one inside, and one of another name is refused.
         let folder = tempfile::TempDir::new().expect("a folder");
@@ -348,8 +353,10 @@ mod tests {
         std::fs::rename(path, &other).expect("renamed");
         let told =
             GoldenFile::read_or_embedded(folder.path(), "work-precision").expect_err("refused").to_string();
-        let wanted =
-            format!("the golden file {} cannot be read: it is of study `terzaghi-mesh`", other.display());
+        let wanted = format!(
+            "the golden file {} cannot be read: it is for the study `terzaghi-mesh`",
+            other.display()
+        );
         assert_eq!(told, wanted);
     }
 

@@ -8,7 +8,7 @@ use crate::golden::measure::UnknownMeasure;
 #[non_exhaustive]
 pub enum GoldenTextError {
     /// The last line has no end.
-    #[error("line {line}: the file ends within it")]
+    #[error("line {line}: the file ends within this line")]
     CutOff {
         /// Counted from 1.
         line: usize,
@@ -71,7 +71,7 @@ pub enum CellError {
         title: String,
     },
     /// Another column has the same title.
-    #[error("`{title}` is given twice for this case and time factor")]
+    #[error("`{title}` occurs twice for this case and time factor")]
     Twice {
         /// The title.
         title: String,

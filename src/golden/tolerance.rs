@@ -180,16 +180,17 @@ impl Jump {
         let needed = self.needed();
         let accepted = if needed <= MOST_TOLERANCE {
             format!(
-                "allow that much scatter: `[golden]` with `tolerance = {needed:e}` in the study, and accept again; \
-                 without golden values `golden = \"none\"` leaves the verdict to the expectations"
+                "allow that much scatter with `[golden]` and `tolerance = {needed:e}` in the study, and \
+                 accept again; or leave the verdict to the expectations with `golden = \"none\"`"
             )
         } else {
             "leave the verdict to the expectations: `golden = \"none\"` in the study".to_owned()
         };
         format!(
-            "`{key}` changes from {before:.6e} to {after:.6e}, by {:.2e}, when the {} changes ({}), and round-off moves \
-             such values by {most:.1e} at most. Solvers do so that round a number to an integer, most often the number of \
-             steps, as in ceil((T − t)/Δt): leave a margin, as in ceil((T − t)/Δt − 1e-6). Or {accepted}",
+            "`{key}` changes from {before:.6e} to {after:.6e}, by {:.2e}, when the {} changes ({}), but \
+             round-off moves such values by {most:.1e} at most. Solvers that round a number to an integer \
+             do this, most often with the number of steps, as in ceil((T − t)/Δt): leave a margin, as in \
+             ceil((T − t)/Δt − 1e-6). Or {accepted}",
             (after - before).abs(),
             digit.name(),
             digit.input(),

@@ -209,7 +209,7 @@ pub(crate) fn compare_states(
         .iter()
         .filter(|study| !before.studies.contains_key(*study) && !after.studies.contains_key(*study))
     {
-        notes.push(format!("neither state has a study `{study}`"));
+        notes.push(format!("neither state contains a study `{study}`"));
     }
     (both, notes)
 }
@@ -476,7 +476,7 @@ mod tests {
         assert_eq!(notes, expected);
         let (found, notes) = compare_states(&before, &after, &["gone".to_owned(), "none".to_owned()]);
         assert!(found.is_empty());
-        assert_eq!(notes[2..], ["1 study is in old only: gone", "neither state has a study `none`"]);
+        assert_eq!(notes[2..], ["1 study is in old only: gone", "neither state contains a study `none`"]);
     }
 
     #[test]

@@ -37,7 +37,7 @@ pub(crate) enum GitError {
 
 fn shallow_hint(is_shallow: bool) -> &'static str {
     if is_shallow {
-        ": the clone is shallow; `git fetch --unshallow` brings the rest of the history"
+        ": the clone is shallow; `git fetch --unshallow` fetches the rest of the history"
     } else {
         ""
     }

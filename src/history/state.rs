@@ -77,7 +77,8 @@ impl State {
             if records.len() < hashes.len() {
                 let unread = count_of(hashes.len() - records.len(), "record", "records");
                 state.notes.push(format!(
-                    "{unread} of `{name}` in {} skipped: of another layout, or damaged; run the study again",
+                    "{unread} of `{name}` in {} skipped, because their layout is different or they are \
+                     damaged; run the study again",
                     folder.display()
                 ));
             }

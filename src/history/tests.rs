@@ -131,8 +131,8 @@ fn what_git_does_not_know_is_told_in_sentences() {
     }
     let shallow =
         GitError::UnknownRevision { revision: "v1".to_owned(), root: "/r".into(), is_shallow: true };
-    let told = "`v1` is neither a folder nor a revision of /r: the clone is shallow; `git fetch --unshallow` brings the rest \
-                of the history";
+    let told = "`v1` is neither a folder nor a revision of /r: the clone is shallow; `git fetch \
+                --unshallow` fetches the rest of the history";
     assert_eq!(shallow.to_string(), told);
     assert!(!repository.is_shallow());
     let told = repository.run(&["cat-file", "-p", "nowhere"]).expect_err("no object").to_string();
@@ -175,9 +175,9 @@ fn timelines_are_those_that_are_asked_for_with_what_is_passed_over() {
         ("\u{fc}", "End", "by another name", Same, Same),
     ];
     assert_eq!(told, wanted);
-    let json = "1 golden file in JSON is skipped, like golden/old.json: golden values are read from layout 2 on, which is \
-                CSV";
-    let bad = format!("golden/bad.csv at {} is skipped: line 1: the file ends within it", end.short());
+    let json = "1 golden file in JSON is skipped, like golden/old.json: only golden values from layout 2 \
+                on, in CSV, are read";
+    let bad = format!("golden/bad.csv at {} is skipped: line 1: the file ends within this line", end.short());
     assert_eq!(notes, [json, &bad]);
     let named = |only: &[&str]| {
         let (lines, notes) = of(only);
@@ -209,7 +209,8 @@ fn a_revision_has_the_studies_of_its_folder_with_the_inputs_that_they_had_then()
         assert!(state.studies["b"].cases.is_empty(), "no study of its name");
     }
     let state = of("HEAD", "golden").expect("a state");
-    let bad = format!("golden/bad.csv at {} is skipped: line 1: the file ends within it", short("HEAD"));
+    let bad =
+        format!("golden/bad.csv at {} is skipped: line 1: the file ends within this line", short("HEAD"));
     assert_eq!(names(&state), ["d", "\u{fc}"]);
     assert_eq!(state.notes, [bad]);
     assert_eq!(of("HEAD", "other").expect("a state").studies.keys().collect::<Vec<_>>(), ["a"]);
@@ -234,8 +235,11 @@ fn records_that_cannot_be_read_are_counted_and_a_folder_without_any_is_refused()
         let state = State::of_records(at).expect("a state");
         assert_eq!(state.name, at.display().to_string());
         assert_eq!(state.studies.get("s").map_or(0, |study| study.cases.len()), cases);
-        let end =
-            format!("of `s` in {} skipped: of another layout, or damaged; run the study again", at.display());
+        let end = format!(
+            "of `s` in {} skipped, because their layout is different or they are damaged; run the \
+                     study again",
+            at.display()
+        );
         let wanted: Vec<String> = passed_over.iter().map(|count| format!("{count} {end}")).collect();
         assert_eq!(state.notes, wanted);
     };

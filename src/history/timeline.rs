@@ -90,7 +90,7 @@ pub(crate) fn timelines(
     let mut notes = Vec::new();
     if let Some(first) = others.first() {
         notes.push(format!(
-            "{} skipped, like {folder}/{first}.json: golden values are read from layout 2 on, which is CSV",
+            "{} skipped, like {folder}/{first}.json: only golden values from layout 2 on, in CSV, are read",
             count_of(others.len(), "golden file in JSON is", "golden files in JSON are")
         ));
     }

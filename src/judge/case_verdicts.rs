@@ -87,9 +87,9 @@ impl CaseDemand {
                 worst(|balance| balance.water_imbalance),
                 self.water_drift_below.map(below),
             ),
-            ("water over pores, less one", worst_layer(|one| one.pore_water), self.pore_water),
+            ("water over pores, minus one", worst_layer(|one| one.pore_water), self.pore_water),
             (
-                "water that left, less s/(n_0 H)",
+                "water that left, minus s/(n_0 H)",
                 worst_layer(|one| one.water_left_error),
                 self.water_left_within.map(below),
             ),
@@ -115,7 +115,7 @@ fn one_set_found(within: f64, record: &Record, records: &[&Record]) -> Check {
     twin.column.points.sets = 1;
     twin.column.points.water_per_cell = 0;
     if twin == record.case {
-        return Check::failed(NAME, "the case has one point set itself");
+        return Check::failed(NAME, "the case itself has one point set");
     }
     let Some(one) = records.iter().find(|other| other.case == twin) else {
         return Check::failed(NAME, "the study has no such case with one point set");

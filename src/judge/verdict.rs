@@ -129,7 +129,7 @@ fn conclude(
         }
         (Some(known), true) if known.strict => (
             VerdictOutcome::UnexpectedPass,
-            format!("passes, though marked as a known failure ({}): remove the mark", known.reason),
+            format!("passes although it is marked as a known failure ({}): remove `xfail`", known.reason),
         ),
         (_, true) => (VerdictOutcome::Passed, sentence(&checks.iter().collect::<Vec<_>>())),
         (_, false) => (VerdictOutcome::Failed, sentence(&failed)),

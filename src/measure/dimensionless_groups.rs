@@ -54,15 +54,15 @@ pub fn inertia_rules(case: &Case, reference: ReferenceKind) -> Option<String> {
         let relative = wave.relative_inertia;
         if case.formulation == Formulation::UP && relative > MOST_RELATIVE_INERTIA {
             return Some(format!(
-                "`{name}` does not hold: the water's inertia against the skeleton is {relative:.1e} of its drag, more \
-                 than {MOST_RELATIVE_INERTIA}, and `u-p` leaves it out"
+                "`{name}` does not apply: the relative inertia of the water is {relative:.1e} of its drag, \
+                 more than {MOST_RELATIVE_INERTIA}, and `u-p` neglects it"
             ));
         }
         let damped = wave.damped_by_steps(case);
         return (damped > MOST_DAMPED).then(|| {
             format!(
-                "`{name}` does not hold: semi-implicit steps damp {damped:.2} of the slowest wave, more than \
-                 {MOST_DAMPED}"
+                "`{name}` does not apply: semi-implicit steps damp {damped:.2} of the slowest wave, more \
+                 than {MOST_DAMPED}"
             )
         });
     }
@@ -70,7 +70,8 @@ pub fn inertia_rules(case: &Case, reference: ReferenceKind) -> Option<String> {
     let holds = change <= MOST_INERTIA;
     (!holds).then(|| {
         format!(
-            "`{name}` is quasi-static and does not hold: the skeleton's inertia changes the rate of consolidation by \
+            "`{name}` is quasi-static and does not apply: the skeleton's inertia changes the rate of \
+             consolidation by \
              {change:.1e}, more than {MOST_INERTIA:.0e}"
         )
     })
@@ -204,7 +205,8 @@ mod tests {
             let early = skeleton_inertia(&case(&layers, 1e-9));
             assert!((early / (1e6 * alone) - 1.0).abs() < 1e-3, "{early:e} for {alone:e}");
             let told = inertia_rules(&case(&layers, 1e-9), ReferenceKind::Layered).expect("it does not hold");
-            let said = "`layered` is quasi-static and does not hold: the skeleton's inertia changes the rate of consolidation by ";
+            let said = "`layered` is quasi-static and does not apply: the skeleton's inertia changes the \
+                        rate of consolidation by ";
             assert!(told.starts_with(said) && told.ends_with(", more than 1e-3"), "{told}");
             // It is over long before the tight layer has drained.
             let late = case(&layers, 0.5);
@@ -290,8 +292,8 @@ mod tests {
             };
             let open = |case: &mut Case| case.material.hydraulic_conductivity = 1.02 * conductivity;
             let told = rules(&open);
-            let open_soil = "`terzaghi` does not hold: the water's inertia against the skeleton is 3.1e-1 of its drag, more \
-                             than 0.3, and `u-p` leaves it out";
+            let open_soil = "`terzaghi` does not apply: the relative inertia of the water is 3.1e-1 of its \
+                             drag, more than 0.3, and `u-p` neglects it";
             assert_eq!(told, open_soil);
             let semi_implicit = |case: &mut Case, step: f64| {
                 open(case);
@@ -318,7 +320,7 @@ mod tests {
             assert_eq!(fast, told, "a load that is fast enough");
             let damped = rules(&|case| semi_implicit(case, 1.0 / frequency));
             let (said, rest) = damped.split_once("damp ").expect("a share");
-            assert_eq!(said, "`terzaghi` does not hold: semi-implicit steps ");
+            assert_eq!(said, "`terzaghi` does not apply: semi-implicit steps ");
             assert!(
                 rest.starts_with("0.") && rest.ends_with(" of the slowest wave, more than 0.1"),
                 "{damped}"

@@ -12,9 +12,10 @@ use oedometer_soil::wording::{short, typed};
 /// The check whose complaint names numbers of points.
 const POINTS_MISSING: &str = "points missing at the start";
 /// The check of the growth that the eigenvalues of the step promise.
-const GROWN_MODE: &str = "growth of a mode until the last output, by the eigenvalues of the step";
+const GROWN_MODE: &str = "growth of a mode until the last output, from the eigenvalues of the step";
 /// The check of steps beyond the critical one, shown where it fails.
-const TOO_FEW_STEPS: &str = "largest step (too few to show it), over the predicted critical one";
+const TOO_FEW_STEPS: &str = "largest step (the run is too short to show instability), over the predicted \
+                             critical one";
 /// Share of the critical step beyond which a run is unstable: the prediction is within 2 % of what is observed.
 const MOST_OF_THE_LIMIT: f64 = 1.05;
 /// Round-off of sums of numbers of similar size.
@@ -33,7 +34,8 @@ const OUT_OF_BALANCE_MOVING: f64 = 0.1;
 /// Wave time over consolidation time up to which a column is in balance except for its first waves.
 const LITTLE_INERTIA: f64 = 1e-3;
 /// Why the points of a moving plane and of two point sets are not judged.
-const MOVING: &str = "stresses of points that cross cells jump; the forces of the run are checked";
+const MOVING: &str =
+    "stresses jump at points that cross cells; the forces during the run are checked instead";
 /// Why splines are not judged.
 const SPLINES: &str = "points do not integrate splines exactly, and the error does not scale with a load";
 /// Gap between outputs and settlement curve that a smooth curve explains.
@@ -163,9 +165,9 @@ pub fn balance_checks(record: &Record, balance: &Balance) -> Vec<RecordCheck> {
         let cells = record.case.cells as f64;
         let bound = is_exact.then_some((WATER_IN_PORES / (cells * cells)).max(LEAST_WATER_IN_PORES));
         checks.extend([
-            RecordCheck::of("water in the soil over its pores, less one", layers.pore_water, bound),
+            RecordCheck::of("water in the soil over its pores, minus one", layers.pore_water, bound),
             RecordCheck::of(
-                "water that left, less the settlement over n_0 H",
+                "water that left, minus the settlement over n_0 H",
                 layers.water_left_error,
                 bound,
             ),
@@ -251,7 +253,7 @@ fn equilibrium_bound(record: &Record) -> Result<f64, &'static str> {
         return Err(why);
     }
     if case.scene.waves && case.formulation != Formulation::QuasiStatic {
-        return Err("waves are not an error; the energy of the run is checked");
+        return Err("waves are not errors; the energy during the run is checked instead");
     }
     if case.is_spline() {
         return Err(SPLINES);
@@ -260,7 +262,7 @@ fn equilibrium_bound(record: &Record) -> Result<f64, &'static str> {
         let unjudged = if case.scene.body != Body::Column || case.column.points.has_two_sets() {
             Some(MOVING)
         } else if record.groups.inertia > LITTLE_INERTIA {
-            Some("inertia carries a part of the load")
+            Some("inertia carries part of the load")
         } else {
             None
         };
@@ -283,7 +285,7 @@ fn most_pressure(record: &Record) -> Result<f64, &'static str> {
     let is_pushed = case.scene.load == LoadKind::Pushed;
     let is_stiff = case.scene.locks && !is_pushed && case.material.poissons_ratio > LOCKING;
     if is_stiff || is_full && case.scene.locks {
-        return Err("methods lock under a load that keeps the volume");
+        return Err("methods lock under a load at constant volume");
     }
     if is_pushed {
         return Ok(MOST_PRESSURE_UNDER_A_PLATE);
@@ -309,7 +311,7 @@ fn water_bound(record: &Record) -> Result<f64, &'static str> {
         return Err("this form of the continuity does not conserve water");
     }
     if case.column.points.jitter != Arrangement::default().jitter {
-        return Err("domains of scattered points overlap: their volumes are not those of the cells");
+        return Err("domains of scattered points overlap: their volumes do not add up to those of the cells");
     }
     if case.scene.question == Question::Rest && case.is_spline() {
         return Err(SPLINES);
@@ -364,8 +366,8 @@ pub fn complaints(record: &Record) -> Vec<String> {
         }
         if check.what == GROWN_MODE {
             return Some(format!(
-                "a mode grows by a factor of {} until the last output, by the eigenvalues of the step, more than {bound}: an \
-                 earlier last output or another recovery of the pressure keeps it small",
+                "a mode grows by a factor of {} until the last output, from the eigenvalues of the step, \
+                 more than {bound}: an earlier last output or another pressure recovery keeps it small",
                 short(check.value)
             ));
         }
@@ -396,7 +398,7 @@ mod tests {
         let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP']\n\
                     integrator = ['implicit']\ncells = [2]\n";
         let mut record = records_of(text).remove(0);
-        let locks = Err("methods lock under a load that keeps the volume");
+        let locks = Err("methods lock under a load at constant volume");
         let (little, more, usual) = (LITTLE_INERTIA, 1.001 * LITTLE_INERTIA, 0.25);
         for (scene, method, inertia, ratio, bound) in [
             (&TERZAGHI, "GIMP", 0.0, usual, Ok(1.6)),

@@ -51,8 +51,8 @@ impl PoorOutput {
     pub fn sentence(&self) -> String {
         let Self { reference, time_factor, accuracy, error } = self;
         format!(
-            "the reference {reference} is only accurate to {accuracy:.1e}, and the smallest error against it is {error:.1e}, at \
-             T_v = {}: it would have to be {} times as accurate",
+            "the reference {reference} is only accurate to {accuracy:.1e}, but the smallest error against \
+             it is {error:.1e}, at T_v = {}: it would have to be {} times as accurate",
             typed(*time_factor),
             short((10.0 * accuracy / (TAIL_SHARE * error).max(ROUND_OFF)).ceil() / 10.0)
         )
@@ -145,8 +145,8 @@ time_step = [{ growth = 0.05 }]
         assert_eq!(complaints(&poor), Vec::<String>::new());
         let told: Vec<String> = unjudged_outputs(&poor).iter().map(PoorOutput::sentence).collect();
         let wanted = format!(
-            "the reference terzaghi is only accurate to {:.1e}, and the smallest error against it is {:.1e}, at T_v = {}: it \
-             would have to be 1.1 times as accurate",
+            "the reference terzaghi is only accurate to {:.1e}, but the smallest error against it is \
+             {:.1e}, at T_v = {}: it would have to be 1.1 times as accurate",
             0.11 * at(times[0]),
             at(times[0]),
             times[0]

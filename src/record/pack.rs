@@ -444,7 +444,7 @@ impl Packs {
             return Ok(writer.generation);
         }
         let opened =
-            Writer::open(&self.folder, index).map_err(self.refused("make the folder or a pack in"))?;
+            Writer::open(&self.folder, index).map_err(self.refused("create the folder or a pack in"))?;
         Ok(writer.insert(opened).generation)
     }
 

@@ -251,7 +251,7 @@ pub fn all_judgements(checks: &[StudyCheck]) -> Table {
             let reason = TakenOver::sentences(std::slice::from_ref(one)).concat();
             whole.rows.push(vec![
                 check.study.as_str().into(),
-                Cell::Verdict(Mood::Note, "taken over".to_owned()),
+                Cell::Verdict(Mood::Note, "reused".to_owned()),
                 one.case.as_str().into(),
                 "".into(),
                 Cell::Text(reason),
@@ -520,7 +520,7 @@ mod tests {
             (
                 StudyCheck { other_inputs: vec!["MPM".to_owned()], ..check(0) },
                 "fail",
-                "agree. 1 case is of other inputs than its golden values, like `MPM`",
+                "agree. 1 case has other inputs than its golden values, like `MPM`",
                 Some(accept),
             ),
             (

@@ -118,7 +118,8 @@ fn summary_table(found: &[&StudyComparison], names: [&str; 2]) -> Table {
         for (row, one) in table.rows.iter_mut().zip(found) {
             row.extend([0, 1].map(|state| time(one.seconds.map(|seconds| seconds[state]))));
         }
-        table = table.note("Times are medians over runs, with the shortest and longest, and never judged.");
+        table =
+            table.note("Times are medians over runs, with the shortest and longest; they are never judged.");
     }
     table
 }
@@ -196,7 +197,7 @@ fn cases(all: &[String]) -> Cell {
 
 /// Where errors or work went at a commit: nothing is known of that where no value is left to compare.
 fn trend_of(step: &Step, word: Trend) -> Cell {
-    if step.shared == 0 { Cell::missing("no value in common with the file before") } else { trend(word) }
+    if step.shared == 0 { Cell::missing("no value in common with the previous file") } else { trend(word) }
 }
 
 /// Golden values over time: a row per commit that changed them.
@@ -229,7 +230,8 @@ pub(crate) fn timeline_table(lines: &[Timeline]) -> Table {
         ),
         rows,
     )
-    .note("Indices are geometric means over those of the first golden file, chained over the values that neighbours share.")
+    .note("Indices are geometric means relative to the first golden file, chained over the values that \
+           successive files share.")
 }
 
 /// The last state of each study, one row each.
@@ -265,7 +267,7 @@ pub(crate) fn timeline_summary(lines: &[Timeline]) -> Table {
         ),
         rows,
     )
-    .note("Indices: geometric mean of the errors, and of the work, over those of the first golden file.")
+    .note("Indices: geometric mean of the errors, and of the work, relative to the first golden file.")
 }
 
 #[cfg(test)]

@@ -112,8 +112,9 @@ impl Whole<'_> {
             (repeated > 0).then(|| {
                 let at = state.repeated_at.as_ref().map_or(String::new(), |at| format!(", first at {at}"));
                 format!(
-                    "{repeated} of {all} rows repeat the place of another with other values{at}: was this time written twice? \
-                     Where they are samples side by side, keep the column that tells them apart"
+                    "{repeated} of {all} rows repeat the place of another with different values{at}: was \
+                     this time written twice? If they are samples side by side, keep the column that \
+                     distinguishes them"
                 )
             })
         };
@@ -186,8 +187,8 @@ impl Whole<'_> {
         let is_weight = self.has_volumes && !self.is_declared && self.volumes.iter().all(is_other);
         is_weight.then(|| {
             format!(
-                "the volumes add up to {}, which is no volume of the scene: they are taken as weights; with \
-                 `whole_volume` in the mapping their sum is checked",
+                "the volumes add up to {}, which is not a volume of the problem: they are used as weights; \
+                 with `whole_volume` in the mapping their sum is checked",
                 short(sum)
             )
         })
@@ -207,7 +208,7 @@ impl Whole<'_> {
         } else {
             return None;
         };
-        Some(format!("the samples lie at {place} m: nothing is known about the rest"))
+        Some(format!("the samples lie only at {place} m: nothing is known about the rest"))
     }
 
     /// Nodes of which the outermost row is missing at an end; a place declared to be one has its row at both.
@@ -261,7 +262,7 @@ impl Whole<'_> {
         let extent = [self.parameters.length, self.parameters.height];
         let [samples, crossings] =
             coverage::incomplete_lattice(&state.initial_distance, &state.initial_height, extent)?;
-        Some(format!("samples stand at {samples} of the {crossings} crossings of their lines"))
+        Some(format!("samples lie at {samples} of the {crossings} crossings of their lines"))
     }
 
     fn counts(&self, states: &[SampledState]) -> Option<Finding> {
@@ -351,8 +352,7 @@ pub fn uneven_meshes(
     let are_alike = (0..meshes.len()).all(|place| count(place) == count(0));
     (*largest > UNEVEN * least && !are_alike).then(|| {
         let ([least, largest], cells) = ([*least, *largest].map(short), meshes[most].0);
-        let sentence =
-            format!("samples stand at {least} heights per cell, and at {largest} on {cells} cells");
+        let sentence = format!("samples lie at {least} heights per cell, and at {largest} on {cells} cells");
         (fewest, Finding::new(Lack::SamplesDiffer, sentence))
     })
 }
@@ -465,8 +465,8 @@ mod tests {
         let unit = |is_declared: bool, has_volumes: bool, sum: f64| {
             whole(kind, is_declared, has_volumes).unit_of_volume(&[with(0.1, sum)])
         };
-        let taken = "the volumes add up to 3, which is no volume of the scene: they are taken as weights; with \
-                     `whole_volume` in the mapping their sum is checked";
+        let taken = "the volumes add up to 3, which is not a volume of the problem: they are used as \
+                     weights; with `whole_volume` in the mapping their sum is checked";
         assert_eq!(unit(false, true, 3.0), Some(taken.to_owned()));
         assert_eq!(
             [unit(true, true, 3.0), unit(false, false, 3.0), unit(false, true, 2.4)],
@@ -487,12 +487,7 @@ mod tests {
         for (reference, states, lack, said) in [
             (kind, vec![cut], Lack::HeightNotCovered, &*base),
             (layer, vec![all(&gap, &nodes)], Lack::LengthNotCovered, &format!("{bare} from the crest")),
-            (
-                layer,
-                vec![holes],
-                Lack::PlacesMissing,
-                "samples stand at 80 of the 81 crossings of their lines",
-            ),
+            (layer, vec![holes], Lack::PlacesMissing, "samples lie at 80 of the 81 crossings of their lines"),
         ] {
             assert_eq!(told(reference, &states), [(lack, format!("at T_v = 0.1, {said}"))]);
         }
@@ -509,7 +504,7 @@ mod tests {
         // Samples that were chosen for display are told and not blamed.
         let shown = |kind: ReferenceKind, state: SampledState| whole(kind, false, true).profiles(&[state]);
         let lie =
-            |place: &str| Some(format!("the samples lie at {place} m: nothing is known about the rest"));
+            |place: &str| Some(format!("the samples lie only at {place} m: nothing is known about the rest"));
         assert_eq!(shown(kind, at(0.1, &[0.5; 3], &[])), lie("y = 0.5"));
         assert_eq!(shown(layer, all(&[0.0, 0.25, 0.5], &nodes)), lie("x = 0, 0.25, 0.5"));
         assert_eq!(shown(layer, all(&[0.0, 0.25, 0.5, 1.0], &nodes)), None);
@@ -537,9 +532,9 @@ mod tests {
                 .map(|heights| at(0.1, heights, &[]));
         let [full, few, nodes, same] = states.each_ref();
         for (meshes, found) in [
-            ([(2, full), (4, few)], Some((1, "samples stand at 0.75 heights per cell, and at 2 on 2 cells"))),
-            ([(4, few), (2, full)], Some((0, "samples stand at 0.75 heights per cell, and at 2 on 2 cells"))),
-            ([(2, nodes), (2, full)], Some((0, "samples stand at 1 heights per cell, and at 2 on 2 cells"))),
+            ([(2, full), (4, few)], Some((1, "samples lie at 0.75 heights per cell, and at 2 on 2 cells"))),
+            ([(4, few), (2, full)], Some((0, "samples lie at 0.75 heights per cell, and at 2 on 2 cells"))),
+            ([(2, nodes), (2, full)], Some((0, "samples lie at 1 heights per cell, and at 2 on 2 cells"))),
             ([(2, full), (4, same)], None),
             ([(4, full), (3, few)], None),
         ] {

@@ -26,7 +26,7 @@ use oedometer_soil::wording::short;
 #[non_exhaustive]
 pub enum ScoreError {
     /// No state is at a requested time.
-    #[error("no state is at a requested time: {0}; --time-tolerance sets how far off a time may be")]
+    #[error("no state is at a requested time: {0}; --time-tolerance sets how far a time may differ")]
     NoTime(String),
     /// A reference refuses its inputs.
     #[error(transparent)]
@@ -171,7 +171,7 @@ impl<'a> Results<'a> {
             };
             if let Some(place) = self.order[..rank].iter().find(has_same).filter(|_| !is_exact) {
                 let sentence = format!(
-                    "its numbers are identical to those of {}: was one result copied, or the mesh not refined?",
+                    "its numbers are identical to those of {}: was a result copied, or the mesh not refined?",
                     self.all[*place].name()
                 );
                 self.all[self.order[rank]]
@@ -258,13 +258,15 @@ impl Scored {
         self.score.unresolved.retain(|output| is_judged(&output.quantity));
         self.score.warnings.splice(0..0, missing);
         self.score.warnings.extend(self.missing(parameters, held.mapping));
-        self.score.warnings.extend(held.mapping.taken_for_granted(held.case.scene.body.is_plane()).map(|taken| Finding {
-            name: Lack::Undeclared,
-            sentence: format!(
-                "the mapping does not declare {taken}: write what the file has into [units] and [sign], because nothing \
-                 is guessed from its numbers"
-            ),
-        }));
+        self.score.warnings.extend(held.mapping.taken_for_granted(held.case.scene.body.is_plane()).map(
+            |taken| Finding {
+                name: Lack::Undeclared,
+                sentence: format!(
+                    "the mapping does not declare {taken}: write what the file uses into [units] and [sign], \
+                 because nothing is guessed from its numbers"
+                ),
+            },
+        ));
         if let Some(reference) = held.references.first() {
             let column = &held.case.column;
             let of_scene = match held.mapping.whole_volume {
@@ -342,19 +344,19 @@ impl Scored {
         let is_curve = self.run.states.iter().all(|state| state.initial_height.is_empty());
         if displacement && !settlement && !is_known && !is_curve {
             let why = if case.scene.body == Body::Slab {
-                "it is that of the plate, where no sample lies: give a curve by [settlement] in the mapping"
+                "it is that of the plate, where there is no sample: give a curve in [settlement] of the mapping"
             } else if is_plane {
                 "no sample lies on the surface under the crest of the load"
             } else {
                 "no sample lies on the surface"
             };
-            let sentence = format!("no settlement is judged: {why}");
+            let sentence = format!("the settlement is not judged: {why}");
             self.score.not_judged.push(Finding::new(Lack::QuantityMissing, sentence));
         }
         let first = self.run.states.first();
         if is_plane && displacement && first.is_some_and(|state| state.horizontal_displacement.is_empty()) {
             self.run.notes.push(
-                "there is no u_x: the displacement is judged by its vertical component alone".to_owned(),
+                "there is no u_x: only the vertical component of the displacement is judged".to_owned(),
             );
         }
     }
@@ -388,7 +390,8 @@ mod tests {
         assert_eq!([name(&["a"]), name(&["a", "b", "c"])], ["a", "a, b, c"]);
         assert_eq!([name(&["a", "b", "c", "d"]), name(&[])], ["a … d (4 files)", ""]);
         let missing = ScoreError::NoTime("there is no T_v = 0.1".to_owned()).to_string();
-        let told = "no state is at a requested time: there is no T_v = 0.1; --time-tolerance sets how far off a time may be";
+        let told = "no state is at a requested time: there is no T_v = 0.1; --time-tolerance sets how far a \
+                    time may differ";
         assert_eq!(missing, told);
     }
 
@@ -458,11 +461,11 @@ mod tests {
             let not_judged = one.score.not_judged.into_iter().map(|finding| finding.sentence);
             not_judged.chain(one.run.notes).collect::<Vec<String>>()
         };
-        let surface = "no settlement is judged: no sample lies on the surface";
-        let crest = "no settlement is judged: no sample lies on the surface under the crest of the load";
-        let plate = "no settlement is judged: it is that of the plate, where no sample lies: give a curve by [settlement] in the \
-                     mapping";
-        let vertical = "there is no u_x: the displacement is judged by its vertical component alone";
+        let surface = "the settlement is not judged: no sample lies on the surface";
+        let crest = "the settlement is not judged: no sample lies on the surface under the crest of the load";
+        let plate = "the settlement is not judged: it is that of the plate, where there is no sample: give a \
+                     curve in [settlement] of the mapping";
+        let vertical = "there is no u_x: only the vertical component of the displacement is judged";
         let (both, alone) = ([moved.clone(), settled.clone()], [moved]);
         assert_eq!(notes(&TERZAGHI, &alone, &[]), [surface]);
         assert_eq!(notes(&MANDEL, &alone, &[]), [plate]);

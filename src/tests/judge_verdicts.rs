@@ -398,7 +398,7 @@ fn a_known_failure_is_told_with_its_reason_and_what_failed() {
     let (met, unmet) =
         ("6 levels; error 0.01 at size 0.1 below 0.05", "error 0.1 at size 0.1 not below 0.05");
     let excused = format!("known failure (issue 7): {unmet}");
-    let surprise = "passes, though marked as a known failure (issue 7): remove the mark";
+    let surprise = "passes although it is marked as a known failure (issue 7): remove `xfail`";
     for (demand, series, outcome, told) in [
         (&strict, &bad, KnownFailure, &*excused),
         (&lax, &bad, KnownFailure, &excused),

@@ -54,7 +54,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let [good, bad] = [&arguments.good, &arguments.bad].map(|named| repository.commit(named));
     let (good, bad) = (good.map_err(|error| usage(&error))?, bad.map_err(|error| usage(&error))?);
     if repository.is_dirty(&["--untracked-files=no"]) {
-        say!("the work tree has uncommitted changes, which the tested commits do not have");
+        say!("the work tree has uncommitted changes, which the tested commits lack");
     }
     let trial = Trial::new(arguments, &repository, &bad)?;
     let ended = search(&trial, &good, &bad);

@@ -369,7 +369,8 @@ mod tests {
         });
         assert_eq!(serde_json::to_value(CheckJson::of(&check)).expect("plain data"), wanted);
         let told = serde_json::to_value(CheckJson::of(&missing)).expect("plain data");
-        let why = "there are no golden values yet (no-such-folder/t.csv): if the results look right, `oedometer accept` them with a reason";
+        let why = "there are no golden values yet (no-such-folder/t.csv): if the results look right, accept \
+                   them with `oedometer accept` and a reason";
         assert_eq!((&told["golden_problem"], &told["end"]), (&why.into(), &"golden".into()));
     }
 }

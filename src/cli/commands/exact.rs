@@ -188,7 +188,7 @@ fn column_rows(
     let is_layer = matches!(kind, ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible);
     if distances.is_some() && !is_layer && !kind.is_manufactured() {
         return Err(Ended::usage(format!(
-            "`--x` is for layers, and `{kind}` depends on the depth alone: leave it out, or ask for `{}` or `{}`",
+            "`--x` is for layers, and `{kind}` depends only on depth: omit it, or ask for `{}` or `{}`",
             ReferenceKind::CosineLayer,
             ReferenceKind::Mandel
         )));
@@ -297,7 +297,7 @@ fn time_factors_at(
     }
     match times.iter().find(|time| !(time.is_finite() && **time >= 0.0)) {
         Some(time) => Err(Ended::usage(format!(
-            "a time of {} s: 0 is the undrained start, later times are positive",
+            "a time of {} s is invalid: 0 is the undrained start, later times are positive",
             typed(*time)
         ))),
         None => Ok(times.iter().map(|time| parameters.time_factor(*time)).collect()),

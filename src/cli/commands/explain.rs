@@ -99,8 +99,7 @@ fn the_one<'a>(studies: &'a [Study], description: &str) -> anyhow::Result<(&'a S
     match fitting.as_slice() {
         [] => {
             let whose = if let [study] = studies { format!(" of `{}`", study.name) } else { String::new() };
-            let reason =
-                format!("no case{whose} is described by `{description}`: `oedometer plan` lists them");
+            let reason = format!("no case{whose} matches `{description}`: `oedometer plan` lists all cases");
             Err(Ended::with(Exit::NothingSelected, reason))
         }
         [(study, case)] => Ok((study, case)),
@@ -114,7 +113,7 @@ fn the_one<'a>(studies: &'a [Study], description: &str) -> anyhow::Result<(&'a S
                 lines.push(format!("  and {} more", several.len() - MOST_NAMED));
             }
             Err(Ended::usage(format!(
-                "`{description}` describes {} cases; give the first digits of a hash:\n{}",
+                "`{description}` matches {} cases; give the first digits of a hash:\n{}",
                 several.len(),
                 lines.join("\n")
             )))
@@ -186,7 +185,7 @@ mod tests {
             assert_eq!(found(&studies, description), Ok(mine.to_owned()), "{description}");
         }
         let told = |whose: &str, what: &str| {
-            let reason = format!("no case{whose} is described by `{what}`: `oedometer plan` lists them");
+            let reason = format!("no case{whose} matches `{what}`: `oedometer plan` lists all cases");
             Err((Exit::NothingSelected, reason))
         };
         assert_eq!(found(&studies, "cells=5"), told("", "cells=5"));

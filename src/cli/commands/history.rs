@@ -29,7 +29,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let (repository, folder) = repository_with(arguments.golden.as_deref(), &arguments.studies)?;
     if repository.is_shallow() {
         say!(
-            "the clone is shallow: commits before its first one are not shown; `git fetch --unshallow` brings them"
+            "the clone is shallow: commits before its first one are not shown; `git fetch --unshallow` fetches them"
         );
     }
     let (lines, notes) = timelines(&repository, &folder, &arguments.studies)

@@ -52,7 +52,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     for kind in ReferenceKind::ALL {
         writeln!(out, "  {}", kind.name())?;
     }
-    writeln!(out, "exact solutions only, without a solver here")?;
+    writeln!(out, "exact solutions without a solver in this program")?;
     for problem in ShelfProblem::ALL {
         writeln!(out, "  {problem}")?;
     }

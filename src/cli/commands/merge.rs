@@ -41,11 +41,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let (files, folders): (Vec<PathBuf>, Vec<PathBuf>) =
         arguments.inputs.iter().cloned().partition(|path| is_study(&path));
     if let Some(missing) = folders.iter().find(|folder| !folder.is_dir()) {
-        return Err(Ended::usage(format!("there is no folder of results {}", missing.display())));
+        return Err(Ended::usage(format!("there is no results folder {}", missing.display())));
     }
     let files = if files.is_empty() { known_to(&folders) } else { files };
     if files.is_empty() {
-        let why = "the folders have no results of a study of this project or of a built-in one";
+        let why = "the folders contain no results of a study of this project or of a built-in one";
         return Err(Ended::with(Exit::NothingSelected, why));
     }
     let studies = load(&files)?;

@@ -76,7 +76,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let studies = load(&chosen)?;
     let tier = arguments.tier;
     if let Some(folder) = arguments.missing.as_ref().filter(|folder| !folder.is_dir()) {
-        return Err(Ended::usage(format!("there is no folder of results {}", folder.display())));
+        return Err(Ended::usage(format!("there is no results folder {}", folder.display())));
     }
     let all: Vec<(&Study, Vec<&Case>)> = studies.iter().map(|study| (study, study.cases(tier))).collect();
     let wanted: Vec<(&Study, Vec<&Case>)> = match &arguments.missing {

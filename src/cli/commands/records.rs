@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         }
         _ => {
             return Err(Ended::usage(format!(
-                "there is no folder of a study's results {}",
+                "there is no results folder of a study at {}",
                 folder.display()
             )));
         }

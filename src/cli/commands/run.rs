@@ -82,9 +82,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         );
     }
     if arguments.case.as_ref().is_some_and(|hash| hash.trim().is_empty()) {
-        return Err(Ended::usage(
-            "`--case` names no case: write a hash or its first digits, as `plan` lists them",
-        ));
+        return Err(Ended::usage("`--case` needs a hash or its first digits, as listed by `plan`"));
     }
     let parting = if arguments.balance { Parting::Cost } else { Parting::Hash };
     let options = RunOptions {
@@ -129,7 +127,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
                 Some(hash) => {
                     format!("no case has a hash that begins with `{hash}`: `oedometer plan` lists them")
                 }
-                None => "no case is in this test level and shard".to_owned(),
+                None => "this test level and shard contain no case".to_owned(),
             },
         )),
         _ => Ok(trust::end_with(all, Exit::Pass)),

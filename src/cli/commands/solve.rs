@@ -98,7 +98,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 fn can_write_fields(study: &Study, folder: &Path) -> anyhow::Result<()> {
     if study.planned.iter().any(|planned| planned.case.column.points.has_two_sets()) {
         return Err(Ended::usage(
-            "`--fields` writes the points of one set, and here the water has points of its own: leave one of the two out",
+            "`--fields` writes the points of one set, but here the water has separate points: omit one of the two",
         ));
     }
     fs::create_dir_all(folder).map_err(|error| cannot_write(folder, &error))

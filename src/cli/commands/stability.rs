@@ -108,18 +108,18 @@ fn contradiction(case: &Case, found: &CriticalStep) -> String {
     if share >= 1.0 - AGREEMENT {
         let at =
             found.probes.iter().find(|probe| !probe.is_as_predicted()).map_or(share, |probe| probe.share);
-        return format!("{label}: the run at {at} of the predicted step does not do what is predicted");
+        return format!("{label}: the run at {at} of the predicted step contradicts the prediction");
     }
     let why = if case.configuration().moves_points() {
-        "points cross cells, and the prediction is for points where they stand at the start: "
+        "points cross cells, and the prediction is for their initial positions: "
     } else {
         ""
     };
     // Rounded down: a share that runs.
     let safe = (95.0 * share).floor() / 100.0;
     format!(
-        "{label}: {why}runs end up to {share:.2} of the predicted step, so `solve` with `--time-step stable={safe}` runs to \
-         its end"
+        "{label}: {why}runs with up to {share:.2} of the predicted step reach their end, so use `solve` \
+         with `--time-step stable={safe}`"
     )
 }
 
@@ -236,7 +236,8 @@ mod tests {
             let label = records[place].case.label();
             records[place].stability = Some(found(Some(1.0)));
             let half = format!(
-                "{}: runs end up to 0.50 of the predicted step, so `solve` with `--time-step stable=0.47` runs to its end",
+                "{}: runs with up to 0.50 of the predicted step reach their end, so use `solve` with \
+                 `--time-step stable=0.47`",
                 records[place].case.label_without_step()
             );
             assert_eq!(told(&records), Err((Exit::VerdictFailed, half)), "{place}");

@@ -152,7 +152,7 @@ impl<'a> Campaign<'a> {
         let starts_solvers = studies.iter().any(|(study, _)| !study.solvers.is_empty());
         let count: usize = studies.iter().map(|(_, cases)| cases.len()).sum();
         if count == 0 {
-            return Err(Ended::with(Exit::NothingSelected, "no case is in this test level"));
+            return Err(Ended::with(Exit::NothingSelected, "this test level contains no case"));
         }
         let most = most_tasks()?;
         if arguments.tasks.min(count as u64) > most {

@@ -65,7 +65,7 @@ fn double_point_cases_are_compared_with_one_set_and_their_water_with_its_pores()
         judged.into_iter().map(|one| (one.verdict.pass, one.verdict.reason)).collect()
     };
     let found = verdicts(&records);
-    assert!(!found[0].0 && found[0].1.contains("one point set itself"), "{found:?}");
+    assert!(!found[0].0 && found[0].1.contains("itself has one point set"), "{found:?}");
     assert!(found[1].0 && found[1].1.contains("are those of one point set"), "{found:?}");
     // A run that ended early has fewer errors, on either side; and no errors agree with nothing.
     let all = records[0].errors.len();
@@ -219,8 +219,8 @@ fn every_demand_of_a_case_says_in_its_own_words_what_was_found() {
     let words = [
         ("drift of the mass of solids", "2e-9 below 3e-9", "2e-9 not below 2e-9"),
         ("drift of the water", "0.03 below 0.05", "0.03 not below 0.03"),
-        ("water over pores, less one", "0.005 in 0.004 … 0.006", "0.005 outside 0.006 … 0.007"),
-        ("water that left, less s/(n_0 H)", "6e-4 below 0.001", "6e-4 not below 6e-4"),
+        ("water over pores, minus one", "0.005 in 0.004 … 0.006", "0.005 outside 0.006 … 0.007"),
+        ("water that left, minus s/(n_0 H)", "6e-4 below 0.001", "6e-4 not below 6e-4"),
         ("spurious velocity over the conductivity", "4e-8 below 5e-8", "4e-8 not below 4e-8"),
         ("time factor of the highest pressure", "0.062 in 0.06 … 0.07", "0.062 outside 0.05 … 0.06"),
         ("largest pressure of the water over the load", "1.75 in 1.5 … 2", "1.75 outside 1 … 1.5"),
@@ -386,6 +386,6 @@ fn errors_beside_those_of_one_set_are_told_with_both_numbers() {
     assert_eq!(told([0.5, 0.250_001], [0.5, 0.25]), (false, apart.to_owned()));
     let [one, two] = [0, 1].map(|place| records[place].clone());
     let alone = |record: &Record, records: &[&Record]| one_set_found(1.0, record, records).reason;
-    assert_eq!(alone(&one, &[&one, &two]), "the case has one point set itself");
+    assert_eq!(alone(&one, &[&one, &two]), "the case itself has one point set");
     assert_eq!(alone(&two, &[&two]), "the study has no such case with one point set");
 }

@@ -23,9 +23,9 @@ const PROFILE_COLUMNS: [(&str, &str, &str); 10] = [
 const HISTORY_COLUMNS: [(&str, &str, &str); 5] = [
     ("case", "", "hash of the case"),
     ("time_factor", "", "T_v = c_v t/H², with the drained c_v"),
-    ("degree_of_consolidation", "", "settlement over the final one of the scene's own reference"),
-    ("kinetic_energy", "J", "of grains and water, of a unit area or thickness, where waves run"),
-    ("strain_energy", "J", "of skeleton and water, with what they had at the start"),
+    ("degree_of_consolidation", "", "settlement over the final one of the problem's own reference"),
+    ("kinetic_energy", "J", "of grains and water, per unit area or thickness, in problems with waves"),
+    ("strain_energy", "J", "of skeleton and water, including the initial energy"),
 ];
 
 /// Columns of the tidy table that are not inputs: name, unit, meaning.

@@ -166,8 +166,7 @@ fn notes(chart: &Chart, x: &Ends, y: &Ends) -> Vec<String> {
     if let Some(field) = &chart.field {
         let missing = field.values.len() - field.drawn().count();
         let is_broken = field.shape().is_none();
-        notes
-            .extend(is_broken.then(|| "The edges and values of the field do not fit each other.".to_owned()));
+        notes.extend(is_broken.then(|| "The edges and values of the field do not match.".to_owned()));
         let are = count_of(missing, "cell without a value is", "cells without a value are");
         notes.extend((missing > 0 && !is_broken).then(|| format!("{are} grey.")));
     }

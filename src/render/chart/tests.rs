@@ -87,7 +87,7 @@ fn a_figure_names_its_series_in_groups_of_their_dashes_in_a_legend_and_to_those_
     field.field.as_mut().expect("a field").values.pop();
     let text = svg(&field);
     assert!(
-        text.contains(">The edges and values of the field do not fit each other.<") && !text.contains("grey"),
+        text.contains(">The edges and values of the field do not match.<") && !text.contains("grey"),
         "{text}"
     );
 }

@@ -32,7 +32,7 @@ pub fn golden_sentence(explanation: &Explanation) -> String {
             format!("{differing} values differ from the golden ones, {agreeing} agree")
         }
     };
-    let inputs = if explanation.has_other_inputs { ". Its inputs are others than theirs" } else { "" };
+    let inputs = if explanation.has_other_inputs { ". Its inputs differ from theirs" } else { "" };
     values + inputs
 }
 
@@ -92,7 +92,7 @@ pub fn attached_notes(record: &Record, found: Option<&OutsideRunFinding>) -> Vec
     });
     notes.extend(times(found));
     let most = about.repeats_differ_by;
-    notes.extend(most.map(|most| format!("results of its repeats differ by at most {}", short(most))));
+    notes.extend(most.map(|most| format!("results of repeated runs differ by at most {}", short(most))));
     notes.extend(about.notes.iter().cloned());
     notes.extend(about.taken.iter().map(|taken| format!("taken: {taken}")));
     notes
@@ -209,7 +209,7 @@ mod tests {
         assert_eq!(of(true, 2, 0), "2 values differ from the golden ones, 0 agree");
         let other =
             Explanation { has_golden: true, agreeing: 3, has_other_inputs: true, ..Explanation::default() };
-        let told = "all 3 golden values of the case agree. Its inputs are others than theirs";
+        let told = "all 3 golden values of the case agree. Its inputs differ from theirs";
         assert_eq!(golden_sentence(&other), told);
         let row = |quantity: Quantity| ErrorRow {
             time_factor: 0.5,
@@ -264,7 +264,7 @@ mod tests {
                 "run by `sh {case}`, version 2.1",
                 "wall time at least 5 s, median 5.5 s of 2 runs, processor 2.25 s, the system does not report memory, load of \
                  the machine 3, the machine was busy or it waited: compare processor times",
-                "results of its repeats differ by at most 1e-9",
+                "results of repeated runs differ by at most 1e-9",
                 "a note",
                 "taken: p from pressure"
             ]

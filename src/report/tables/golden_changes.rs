@@ -17,8 +17,8 @@ pub(crate) fn summary(group: &DifferenceGroup) -> String {
         Change::Moved => "moved".to_owned(),
         Change::Missing => format!("{is} no longer measured"),
         Change::Extra => format!("{is} not in the golden file"),
-        Change::Smaller => "fell where others of their case rose".to_owned(),
-        Change::Stale => "improved: the golden ones are stale".to_owned(),
+        Change::Smaller => "fell where others of the same case rose".to_owned(),
+        Change::Stale => "improved: the golden values are stale".to_owned(),
     };
     let mut sentence = format!(
         "{} {what}, in {}",
@@ -135,13 +135,13 @@ mod tests {
             (Change::Extra, "1 value is not in the golden file, in 1 case", "are not in the golden file"),
             (
                 Change::Smaller,
-                "1 value fell where others of their case rose, in 1 case",
-                "fell where others of their case rose",
+                "1 value fell where others of the same case rose, in 1 case",
+                "fell where others of the same case rose",
             ),
             (
                 Change::Stale,
-                "1 value improved: the golden ones are stale, in 1 case",
-                "improved: the golden ones are stale",
+                "1 value improved: the golden values are stale, in 1 case",
+                "improved: the golden values are stale",
             ),
         ] {
             assert_eq!(summary(&group(change, 1, None, Some(1.0))), one);

@@ -69,8 +69,9 @@ const MEASURES: [(Quantity, Sample, Norm); 6] = [
 ];
 
 /// Why a relative error has no value.
-pub(crate) const NOT_RESOLVED: &str = "the exact value is zero, has vanished against its start or the load, or is smaller than the round-off of the run or \
-     the accuracy of the reference";
+pub(crate) const NOT_RESOLVED: &str = "the exact value is zero, is negligible against its initial value or \
+                                       the load, or is smaller than the round-off of the run or the \
+                                       accuracy of the reference";
 
 fn missing_reason(record: &Record) -> String {
     record.status.failure().map_or_else(|| NOT_RESOLVED.to_owned(), Failure::name_with_step)

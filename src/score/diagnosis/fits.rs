@@ -271,8 +271,9 @@ fn clock(given: &Given<'_>, base: &World, fit: &Fit, names: &[(f64, String)]) ->
         [true, true] => None,
         [_, true] => {
             let from = shown(rounded(fit.from));
-            let said =
-                format!(" of the end: all has drained before the first time, at {from} × the time or more");
+            let said = format!(
+                " of the end: everything has drained before the first time, at {from} × the time or more"
+            );
             let or = if !given.has_pressure() {
                 " Or does the skeleton carry the load at once, because the pore pressure is missing from the momentum balance?"
             } else if given.moves() {
@@ -281,12 +282,12 @@ fn clock(given: &Given<'_>, base: &World, fit: &Fit, names: &[(f64, String)]) ->
                 ""
             };
             let few = few(&|factor| factor >= fit.from, fit.from);
-            Some(at(fit.to).fitted(&said, format!("is k, or are the times, too large by far?{few}{or}")))
+            Some(at(fit.to).fitted(&said, format!("is k, or are the times, far too large?{few}{or}")))
         }
         [true, false] => {
             let most = shown(rounded(fit.to));
             let few = few(&|factor| factor <= fit.to, fit.to);
-            let asked = format!("is k, or are the times, too small by far, {most} × at most?{few}");
+            let asked = format!("is k, or are the times, far too small, {most} × at most?{few}");
             Some(at(fit.number).with(" of the start: nothing has drained at the last time", asked))
         }
         [false, false] if (fit.number - 1.0).abs() < NEAR_ONE => None,
@@ -329,7 +330,7 @@ fn generic(given: &Given<'_>, factor: f64) -> String {
 fn moment(base: &World, moment: f64, first: f64) -> Option<World> {
     let seconds = short(rounded(moment.abs()));
     let (side, late) = if moment < 0.0 { ("before", "late") } else { ("after", "early") };
-    let asked = format!("do your times count from another moment, so that all are {seconds} s too {late}?");
+    let asked = format!("do your times start at another moment, so that all are {seconds} s too {late}?");
     let world = World { clock: [1.0, moment], ..base.clone() }.fitted(&format!(" {seconds} s {side}"), asked);
     (moment.abs() >= NEAR_ONE * first).then_some(world)
 }
@@ -337,9 +338,8 @@ fn moment(base: &World, moment: f64, first: f64) -> Option<World> {
 /// The world of a load that rises evenly, where that of the scene is there at once.
 fn ramp(base: &World, fit: &Fit) -> Option<World> {
     let seconds = short(three_digits(fit.number));
-    let asked = format!(
-        "does your load rise over {seconds} s, in a ramp, where that of the problem is there at once?"
-    );
+    let asked =
+        format!("does your load rise over {seconds} s, in a ramp, whereas that of the problem is sudden?");
     let said = format!(" under a load that rises over {seconds} s");
     let world = World { ramp: fit.number, ..base.clone() }.fitted(&said, asked);
     (fit.is_open == [false, false]).then_some(world)

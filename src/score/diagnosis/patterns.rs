@@ -65,7 +65,7 @@ fn blank(column: &Column, exact: &[f64], given: &Given<'_>, limit: &Limit) -> Op
     let (place, asked) = place_of(column, given, &is_seen, &is_blank);
     let asked = match asked {
         "" if blank == 0.0 => "does a probe lie outside, or is a value missing there?",
-        "" => "is it a number that stands for none (fill value)?",
+        "" => "is it a fill value?",
         asked => asked,
     };
     let looked = if given.are_picked { " looked at" } else { "" };
@@ -96,7 +96,7 @@ fn place_of(
     };
     if let Some(outputs) = whole(&|place| column.outputs[place]) {
         let times: Vec<String> = outputs.iter().map(|output| short(given.times[*output])).collect();
-        return (format!(", all of t = {} s,", times.join(", ")), "is this output not written?");
+        return (format!(", all of t = {} s,", times.join(", ")), "was this output not written?");
     }
     match whole(&|place| rows[place]) {
         Some(blank) if blank.len() <= 2 => {
@@ -202,6 +202,6 @@ fn order(column: &Column, exact: &[f64], limit: &Limit) -> Option<Reading> {
     let is_better = left <= (ORDERED * column.residual).max(FLOOR);
     let which = if orders.windows(2).all(|pair| pair[0] == pair[1]) { "the same" } else { "another one" };
     let begin = format!("has the right values in another order, {which} at every output");
-    let asked = "are they those of other nodes' numbers (a permutation)?";
+    let asked = "are they numbered differently (a permutation)?";
     is_better.then(|| reading(begin, asked, [2, 0], left, column))
 }

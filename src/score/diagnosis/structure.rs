@@ -40,7 +40,7 @@ pub fn step_numbers(given: &Given<'_>) -> Option<String> {
     };
     (first >= 0.0).then(|| {
         format!(
-            "your times count outputs ({}, …): are they numbers of steps where times are meant? At T_v = {} {who}",
+            "your times count outputs ({}, …): are they step numbers instead of times? At T_v = {} {who}",
             counted.join(", "),
             factors(given, &at)
         )
@@ -66,9 +66,7 @@ pub fn same_state(given: &Given<'_>) -> Option<String> {
     let of = free_times(given).map_or(String::new(), |at| {
         format!(", that of {} s (T_v = {})", short(fits::rounded(at[0])), factors(given, &at[..1]))
     });
-    Some(format!(
-        "all outputs hold the same state{of}: is one state written every time, or always the same one read?"
-    ))
+    Some(format!("all outputs hold the same state{of}: is the same state written, or read, every time?"))
 }
 
 /// A time for each output at which all columns match, where the file's own times say nothing.
@@ -118,11 +116,11 @@ fn free_times(given: &Given<'_>) -> Option<Vec<f64>> {
 pub fn content(column: &Column, given: &Given<'_>) -> Option<String> {
     let name = column.name;
     let (first, values) = (column.values[0], &column.values);
-    let another = "is it another array than the one that is meant?";
+    let another = "is it the wrong array?";
     if column.is_zero() {
         let or = match column.field.is_stress() {
             true if !given.moves() => {
-                " Or has all drained before the first time (is k, or are the times, too large by far)?"
+                " Or has everything drained before the first time (is k, or are the times, far too large)?"
             }
             false if !given.is_stressed() => " Or does nothing drain?",
             _ => "",
@@ -143,13 +141,13 @@ pub fn content(column: &Column, given: &Given<'_>) -> Option<String> {
     };
     if column.own_outputs().into_iter().all(counts) {
         let from = short(first);
-        return Some(format!("your {name} counts from {from} by ones: are these numbers of nodes or cells?"));
+        return Some(format!("your {name} counts from {from} by ones: are these node or cell numbers?"));
     }
     let is_other_right = Limit::of(column, given).is_other_right;
     if column.stands_still() && is_other_right {
         return Some(format!(
-            "your {name} is the same at all outputs and unlike the exact one at any time: is it another array, or one \
-             state written every time?"
+            "your {name} is the same at all outputs and unlike the exact one at any time: is it the wrong \
+             array, or the same state written every time?"
         ));
     }
     let alike = correlation(column, &column.exact(&given.own));
@@ -231,10 +229,7 @@ pub fn place(column: &Column, given: &Given<'_>) -> Option<String> {
     rows.retain(|row| share(&|y| (y - row).abs() < 1e-6 * height) > IN_ONE_PLACE);
     let of = |what: String| {
         let percent = short(fits::rounded((100.0 * column.residual).round()));
-        format!(
-            "your {} is off by {percent} %, and no mistake that is known explains it: {what}",
-            column.name
-        )
+        format!("your {} is off by {percent} %, and no known mistake explains it: {what}", column.name)
     };
     let first = column.at_output(column.outputs[0]).len();
     let outputs = column.own_outputs();

@@ -82,9 +82,9 @@ impl Results<'_> {
         };
         let asked = match other {
             ReferenceKind::TerzaghiIncompressible | ReferenceKind::CosineLayerIncompressible => {
-                "does the water of your solver store nothing, n/K_w = 0?"
+                "is the water of your solver incompressible, n/K_w = 0?"
             }
-            _ => "does the water of your solver store, n/K_w > 0?",
+            _ => "is the water of your solver compressible, n/K_w > 0?",
         };
         Ok(Some(format!(
             "{} of {} not converge against `{own}`, and all do against `{other}` ({} at T_v = {} at order {order:.2}): {asked} \

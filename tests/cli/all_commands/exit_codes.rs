@@ -21,11 +21,11 @@ fn place() -> TempDir {
 
 /// Commands, their exit codes and what they say.
 const ENDS: &str = "
-plan short.toml --missing none | 2 | there is no folder of results none
-merge short.toml empty none | 2 | there is no folder of results none
-merge empty | 4 | the folders have no results of a study of this project or of a built-in one
+plan short.toml --missing none | 2 | there is no results folder none
+merge short.toml empty none | 2 | there is no results folder none
+merge empty | 4 | the folders contain no results of a study of this project or of a built-in one
 records empty | 4 | empty has no such record
-records none | 2 | there is no folder of a study's results none
+records none | 2 | there is no results folder of a study at none
 exact mandel --zeta 0.5 | 2 | the fields of `mandel` depend on the distance from the middle: give it by `--x`
 exact single-mode --degree 0.5 | 2 | `single-mode` has no time factor for a degree in closed form
 score a.csv --scene terzaghi --time-tolerance 1 | 2 | `--time-tolerance 1` is invalid: expected a number from 0 to below 1
@@ -160,7 +160,7 @@ fn all_names_are_listed_under_their_headings() {
                 "references",
                 with_nothing(&ReferenceKind::ALL.iter().map(|kind| kind.name()).collect::<Vec<_>>())
             ),
-            ("exact solutions only, without a solver here", with_nothing(&ShelfProblem::NAMES)),
+            ("exact solutions without a solver in this program", with_nothing(&ShelfProblem::NAMES)),
         ]
     );
 }

@@ -113,7 +113,7 @@ fn impossible_problems_are_refused_in_sentences() {
     let never =
         ["yield-front", "--set", "material.preconsolidation=2", "--set", "material.reload_modulus=2e6"];
     refused(&never, "no yield front");
-    refused(&["sealed-element", "--x", "0.5"], "depends on the depth alone");
+    refused(&["sealed-element", "--x", "0.5"], "depends only on depth");
 }
 
 #[test]

@@ -214,7 +214,7 @@ fn repeats_are_timed_and_the_solver_says_its_version_and_its_own_time() {
         "toy-solver 1.2",
         "of 3 runs",
         "0.125 s by its own account",
-        "results of its repeats differ by at most 0",
+        "results of repeated runs differ by at most 0",
         "./toy {case} {out} right 10",
     ] {
         assert!(said.contains(part), "{part}: {said}");

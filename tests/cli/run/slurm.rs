@@ -192,7 +192,7 @@ fn a_cluster_that_takes_no_array_or_is_none_is_told() {
         "error: cannot start sbatch: No such file or directory; is this machine part of a Slurm cluster?\n";
     assert!(told.code == 2 && told.err.ends_with(end), "{}: {}", told.code, told.err);
     let told = none.run(&["--tier", "smoke"]);
-    assert_eq!((told.code, told.err.as_str()), (4, "error: no case is in this test level\n"));
+    assert_eq!((told.code, told.err.as_str()), (4, "error: this test level contains no case\n"));
 }
 
 #[test]

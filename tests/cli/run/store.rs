@@ -460,7 +460,7 @@ fn tables_have_the_records_of_other_sources_too_and_say_how_many() {
     });
     let hash = study().cases(Tier::Full)[4].hash();
     let told = call(at, &["run", "short.toml", "--case", &hash]);
-    let others = "short: 3 older records in the table are of other sources\n".to_owned();
+    let others = "short: 3 older records in the table come from other sources\n".to_owned();
     assert_eq!((told.code, told.err), (0, others + &end("1 case")));
     assert_eq!(table().lines().count(), rows);
     assert_eq!(table().matches(",0123456789abcdef,").count(), 3 * (rows - 1) / 8);

@@ -422,7 +422,7 @@ fn mistakes_that_the_numbers_show_are_named_and_others_are_not() {
             changed(&|row| Row { time: row.time / 1.02, ..*row }),
             "at 1.02 × the time: is k 1.02e-4 m/s for 1e-4",
         ),
-        (changed(&|row| Row { pressure: 0.0, ..*row }), "is 0 everywhere: is it another array"),
+        (changed(&|row| Row { pressure: 0.0, ..*row }), "is 0 everywhere: is it the wrong array"),
     ] {
         let told = score(at, &rows, &[]);
         assert_eq!(told.code, 0, "{}", told.err);
@@ -566,8 +566,8 @@ fn the_water_is_named_where_errors_fall_against_that_of_the_other_kind_alone() {
         assert_eq!(told(solution, against), [""; 0], "{solution} {against}");
     }
     for (solution, against, asked) in [
-        (stiff, soft, "does the water of your solver store nothing, n/K_w = 0?"),
-        (soft, stiff, "does the water of your solver store, n/K_w > 0?"),
+        (stiff, soft, "is the water of your solver incompressible, n/K_w = 0?"),
+        (soft, stiff, "is the water of your solver compressible, n/K_w > 0?"),
     ] {
         let told = told(solution, against);
         let end = format!("{asked} Then `--reference {solution}` is the right one");

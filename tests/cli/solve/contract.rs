@@ -546,5 +546,5 @@ fn fields_of_several_meshes_have_folders_and_those_of_two_point_sets_are_refused
     assert!(code == 0 && err.contains("1 states"), "{err}");
     assert!(folder.path().join("cells-4/fields_0000.vtu").is_file());
     let (code, out, err) = told(&[&line[..], &["--set", "points.sets=2"]].concat());
-    assert!(code == 2 && out.is_empty() && err.contains("the water has points of its own"), "{err}");
+    assert!(code == 2 && out.is_empty() && err.contains("the water has separate points"), "{err}");
 }

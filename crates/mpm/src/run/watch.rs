@@ -148,8 +148,8 @@ impl<'a> Watch<'a> {
             (StepBound::AllWaves, Some(mode)) => format!("; {mode}"),
             (StepBound::AllWaves, None) => {
                 let crossing = if self.plan.moves_points && share < 1.0 {
-                    ", for points where they stand at the start: as they cross cells smaller steps are critical, which \
-                     `oedometer stability` observes"
+                    ", which is for the initial positions of the points: as they cross cells the critical \
+                     step becomes smaller; `oedometer stability` observes it"
                 } else {
                     ""
                 };

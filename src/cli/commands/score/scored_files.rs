@@ -43,7 +43,9 @@ pub fn read(
     if mapping.time.case {
         if requested.is_empty() {
             return Err(Ended::usage(
-                "the mapping takes the times of the case: give them with --time-factor, in the order of the files".to_owned(),
+                "the mapping uses the times of the case: give them with --time-factor, in the order of the \
+                 files"
+                    .to_owned(),
             ));
         }
         let seconds: Vec<f64> =
@@ -86,7 +88,8 @@ fn mapping_of(arguments: &Arguments, axes: Axes, is_tables: bool) -> anyhow::Res
     let mut preset = arguments.preset;
     if preset.is_none() && typed.is_none() {
         if is_tables {
-            let up = "y is the initial height over the base in m, p is in Pa and positive in compression, u_y is in m and \
+            let up = "y is the initial height above the base in m, p is in Pa and positive in compression, \
+                      u_y is in m and \
                       positive upward";
             let along = ", x is the initial distance from the crest of the load in m, u_x is in m and positive away from it";
             let places = match axes {
@@ -127,8 +130,8 @@ fn cells_of(typed: &str, results: usize) -> anyhow::Result<Vec<usize>> {
         return Ok(cells);
     }
     Err(Ended::usage(format!(
-        "`--cells {typed}` has {} numbers for {results} results: give one per result; a quoted pattern, like \
-         'mesh-10/*.csv', makes the files of one mesh one result",
+        "`--cells {typed}` has {} numbers for {results} results: give one per result; a quoted pattern, \
+         like 'mesh-10/*.csv', combines the files of one mesh into one result",
         cells.len()
     )))
 }
@@ -149,7 +152,7 @@ mod tests {
         for (typed, count, results) in [("10", 1, 2), ("10,20,40", 3, 2), ("10", 1, 0)] {
             let told = format!(
                 "`--cells {typed}` has {count} numbers for {results} results: give one per result; a quoted \
-                 pattern, like 'mesh-10/*.csv', makes the files of one mesh one result"
+                 pattern, like 'mesh-10/*.csv', combines the files of one mesh into one result"
             );
             assert_eq!(of(typed, results), Err(told));
         }

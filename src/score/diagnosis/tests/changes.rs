@@ -180,9 +180,9 @@ const OFFERS: [(&str, &str); 30] = [
     ("y` counted from the other end", "end"),
     ("count from the drained side", "end"),
     ("`x` count from the other end", "side"),
-    ("base drained in place", "base"),
-    ("drained, too", "both"),
-    ("another array", "array"),
+    ("base drained instead", "base"),
+    ("drained too", "both"),
+    ("wrong array", "array"),
     ("momentum", "coupling"),
     ("mass balance, so", "coupling"),
     ("storage of the water", "storage"),
@@ -276,8 +276,8 @@ fn changes() -> Vec<Change> {
         clock(1.0 / 3600.0, &["m/hour"]),
         clock(1.0 / 86400.0, &["m/day"]),
         clock(1.0 / 9810.0, &["k/γ_w"]),
-        clock(86400.0, &["the time or more|drained before the first time", "day|too large by far"]),
-        clock(9810.0, &["the time or more|drained before the first time", "k/γ_w|too large by far"]),
+        clock(86400.0, &["the time or more|drained before the first time", "day|far too large"]),
+        clock(9810.0, &["the time or more|drained before the first time", "k/γ_w|far too large"]),
         young(1.7, &["E_oed|stiffness"]),
         young(1e-3, &["power of ten"]),
         load(2.0, &["is the load 2 ×"]),
@@ -328,7 +328,7 @@ fn changes() -> Vec<Change> {
         ),
         change(
             "times late",
-            &["do your times count from another moment"],
+            &["do your times start at another moment"],
             ["moment ramp", "moment ramp", "moment ramp"],
             |scene| {
                 let late = 0.3 * scene.seconds()[0];
@@ -421,7 +421,7 @@ fn changes() -> Vec<Change> {
         ),
         written(
             "an array of zeros",
-            &["your p is 0 everywhere", "another array"],
+            &["your p is 0 everywhere", "wrong array"],
             ["array", "array clock", ""],
             |_, state| times(&mut state.pressure, 0.0),
         ),
@@ -451,7 +451,7 @@ fn changes() -> Vec<Change> {
         ),
         change(
             "drained at the base",
-            &["is the base drained in place of the surface?"],
+            &["is the base drained instead of the surface?"],
             ["base", "base end", "base"],
             |scene| {
                 scene.is_column().then(|| {
@@ -470,7 +470,7 @@ fn changes() -> Vec<Change> {
                 })
             },
         ),
-        change("drained at both ends", &["is the base drained, too?"], ["both", "both", "both"], |scene| {
+        change("drained at both ends", &["is the base drained too?"], ["both", "both", "both"], |scene| {
             (scene.is_column() && scene.parameters.soils.is_empty()).then(|| {
                 let (height, half) = (scene.parameters.height, 0.5 * scene.parameters.height);
                 let parameters = ColumnParameters { height: half, ..scene.parameters };
@@ -512,13 +512,13 @@ fn changes() -> Vec<Change> {
         ),
         change(
             "nothing drains",
-            &["does nothing drain"],
+            &["nothing drains"],
             ["closed clock", "closed clock", "closed clock array"],
             |scene| (scene.kind != ReferenceKind::XieLeo).then(|| scene.solved(&scene.parameters, &|_| 0.0)),
         ),
         change(
             "a closed surface",
-            &["does nothing drain"],
+            &["nothing drains"],
             ["closed", "closed array", "closed array"],
             |scene| {
                 (scene.is_column() && scene.parameters.soils.is_empty()).then(|| {
@@ -538,7 +538,7 @@ fn changes() -> Vec<Change> {
         written("p as head in cm", &["your p", "a head in cm"], P, move |_, state| {
             times(&mut state.pressure, 100.0 / weight)
         }),
-        change("p of the output before", &["your p", "output before"], ["behind", "", ""], |scene| {
+        change("p of the output before", &["your p", "previous output"], ["behind", "", ""], |scene| {
             let mut states = scene.own();
             let times = scene.seconds();
             for place in (1..states.len()).rev() {

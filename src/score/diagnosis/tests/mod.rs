@@ -180,7 +180,7 @@ fn an_inaccurate_solver_is_told_nothing() {
 fn an_array_of_zeros_is_named() {
     only(
         &changed(0.0, |state| scale(&mut state.pressure, 0.0)),
-        &["your p is 0 everywhere: is it another array"],
+        &["your p is 0 everywhere: is it the wrong array"],
     );
 }
 
@@ -271,7 +271,7 @@ fn another_stress_in_the_place_of_the_pressure_is_named() {
     for off in [0.0, 1e-3, 0.05] {
         only(
             &changed(off, |state| state.pressure = state.effective_stress.iter().map(|s| -s).collect()),
-            &["your p matches the exact effective stress: is it given in place of the pore pressure?"],
+            &["your p matches the exact effective stress: is it given instead of the pore pressure?"],
         );
         only(
             &changed(off, |state| state.pressure.clone_from(&state.effective_stress)),
@@ -282,7 +282,7 @@ fn another_stress_in_the_place_of_the_pressure_is_named() {
         };
         only(
             &changed(off, |state| state.pressure = total(state)),
-            &["your p matches the exact total stress: is it given in place of the pore pressure?"],
+            &["your p matches the exact total stress: is it given instead of the pore pressure?"],
         );
     }
 }
@@ -390,7 +390,7 @@ fn times_that_are_off_by_a_factor_or_from_another_moment_are_named() {
             let seconds = seconds.and_then(|seconds| seconds.parse::<f64>().ok());
             assert!(
                 seconds.is_some_and(|seconds| (seconds / 1.635 - 1.0).abs() < 0.02)
-                    && told.contains(&format!("s {moment}: do your times count from another moment"))
+                    && told.contains(&format!("s {moment}: do your times start at another moment"))
                     && told.ends_with(sense),
                 "{offset}, {off}: {told}"
             );

@@ -78,22 +78,22 @@ const ROWS: [(&str, &str, f64, Edit); 23] = [
     ("is a factor missing where it is written", "p", 1e-3, |states| {
         each(states, |one| super::scale(&mut one.pressure, 0.731));
     }),
-    ("is it given in place of the effective stress", "effective_stress", 1e-2, |states| {
+    ("is it given instead of the effective stress", "effective_stress", 1e-2, |states| {
         each(states, |state| state.effective_stress.clone_from(&state.pressure));
     }),
-    ("is the strain given in its place", "p", 1e-2, |states| {
+    ("is the strain given instead", "p", 1e-2, |states| {
         each(states, |state| {
             state.pressure = state.effective_stress.iter().map(|stress| stress / 1.2e6).collect();
         });
     }),
-    ("does it count anew after the first output", "u_y", 1e-3, |states| {
+    ("is it reset after the first output", "u_y", 1e-3, |states| {
         let first = states[0].displacement.clone();
         each(&mut states[1..], |state| {
             state.displacement.iter_mut().zip(&first).for_each(|(u, first)| *u -= first);
         });
     }),
-    ("is it the increment since the output before", "u_y", 1e-2, |states| increments(states)),
-    ("does it count from a later moment, at 1.635 s", "u_y", 0.0, |states| {
+    ("is it the increment since the previous output", "u_y", 1e-2, |states| increments(states)),
+    ("is it counted from a later time, 1.635 s", "u_y", 0.0, |states| {
         let column = ColumnParameters::default();
         let reference = Reference::new(ReferenceKind::Terzaghi, &column, &[]).expect("the seed column");
         let early = |y: &f64| reference.fields(0.02, 1.0 - y).expect("inside").displacement;
@@ -102,7 +102,7 @@ const ROWS: [(&str, &str, f64, Edit); 23] = [
             state.displacement.iter_mut().zip(&heights).for_each(|(u, y)| *u -= early(y));
         });
     }),
-    ("is it that of the output before", "p", 1e-2, |states| {
+    ("is it that of the previous output", "p", 1e-2, |states| {
         pressures(states, |at, time, depth| {
             let before = TIMES.iter().copied().filter(|other| *other < 0.999 * time).fold(0.0, f64::max);
             at(before, depth)
@@ -122,7 +122,7 @@ const ROWS: [(&str, &str, f64, Edit); 23] = [
         each(states, |one| one.pressure.rotate_left(7));
     }),
     (
-        "all of t = 40.88 s, where it should not be, and right at the others: is this output not written",
+        "all of t = 40.88 s, where it should not be, and right at the others: was this output not written",
         "p",
         1e-3,
         |all| {
@@ -130,7 +130,7 @@ const ROWS: [(&str, &str, f64, Edit); 23] = [
         },
     ),
     (
-        "all of y = 0 m, where it should not be, and right at the others: is it a number that stands for none",
+        "all of y = 0 m, where it should not be, and right at the others: is it a fill value",
         "p",
         1e-2,
         |all| {
@@ -138,14 +138,14 @@ const ROWS: [(&str, &str, f64, Edit); 23] = [
             each(all, |state| *state.pressure.last_mut().expect("a base") = -999.0);
         },
     ),
-    ("are these numbers of nodes or cells", "p", 0.0, |states| {
+    ("are these node or cell numbers", "p", 0.0, |states| {
         each(states, |state| state.pressure = (1..=21).map(f64::from).collect());
     }),
-    ("is it one state at all outputs, that of 8.1", "p", 0.0, |states| {
+    ("is it the same state at all outputs, that of 8.1", "p", 0.0, |states| {
         let second = states[1].pressure.clone();
         each(states, |state| state.pressure.clone_from(&second));
     }),
-    ("is the porosity given in its place", "p", 0.0, |states| {
+    ("is the porosity given instead", "p", 0.0, |states| {
         each(states, |one| {
             one.pressure = one.effective_stress.iter().map(|s| 0.3 + 0.7 * s / 1.2e6).collect();
         });
@@ -225,7 +225,8 @@ fn the_structure_of_a_file_is_looked_at_before_anything_is_fitted() {
     for (states, words) in [
         (
             numbered(1),
-            "your times count outputs (1, 2, 3, …): are they numbers of steps where times are meant? At T_v = 0.05, 0.1, 0.5, 1 ",
+            "your times count outputs (1, 2, 3, …): are they step numbers instead of times? At T_v = 0.05, \
+             0.1, 0.5, 1 ",
         ),
         (numbered(0), "your times count outputs (0, 1, 2, …)"),
         (still.collect(), "all outputs hold the same state, that of 8.17"),
