@@ -506,8 +506,8 @@ fn golden(_: &mut SchemaGenerator) -> Schema {
         { "enum": ["none"] },
         { "type": "object", "additionalProperties": false, "properties": { "tolerance": {
             "type": "number",
-            "description": "Change of a value, and of the part of 1 that it is, that always passes: for solvers that do not \
-                            reproduce their last digits"
+            "description": "Absolute and relative change of a value that always passes: for solvers that do \
+             not reproduce their last digits"
         } } },
     ] })
 }

@@ -264,7 +264,7 @@ impl StudyLines {
         let sweep = ["method = [\"GIMP-SRI-patch\"]", "cells = [2]"].map(str::to_owned);
         let study = self.study(Purpose::Theory, sweep)?;
         if study.planned.is_empty() {
-            return Err(OverrideError::typed("the assignments leave no column"));
+            return Err(OverrideError::typed("the settings leave no column"));
         }
         Ok(study)
     }
@@ -340,8 +340,8 @@ fn entries<'a>(name: &str, typed: &'a str) -> Result<Vec<&'a str>, OverrideError
     let entries: Vec<&str> = typed.split(',').map(str::trim).collect();
     match entries.iter().find(|entry| has_leading_zero(entry)) {
         Some(entry) => Err(OverrideError::typed(format!(
-            "`{entry}` in `{name} {typed}` begins with a zero: write decimals with a point, like 0.{}, for a comma \
-             separates numbers",
+            "`{entry}` in `{name} {typed}` begins with a zero: write decimals with a point, like 0.{}, \
+             because a comma separates numbers",
             entry.trim_start_matches(['+', '-'])
         ))),
         None => Ok(entries),
@@ -514,11 +514,13 @@ mod tests {
         for (typed, told) in [
             (
                 "0,05",
-                "`05` in `--zeta 0,05` begins with a zero: write decimals with a point, like 0.05, for a comma separates numbers",
+                "`05` in `--zeta 0,05` begins with a zero: write decimals with a point, like 0.05, because \
+                 a comma separates numbers",
             ),
             (
                 "1,-007",
-                "`-007` in `--zeta 1,-007` begins with a zero: write decimals with a point, like 0.007, for a comma separates numbers",
+                "`-007` in `--zeta 1,-007` begins with a zero: write decimals with a point, like 0.007, \
+                 because a comma separates numbers",
             ),
             ("1 d", "`1 d` in `--zeta 1 d` is not a number"),
         ] {
@@ -778,7 +780,7 @@ mod tests {
         const LAW: &str = "material.law=linear";
         let length = "write a plain number in m, or one with its unit in quotes, like \"10 m\": m, cm, mm";
         let wide = format!("`drain.radius`: `wide` is not a number with a unit: {length}");
-        let second = format!("`drain.radius`: `s` is not a unit of what is measured in m: {length}");
+        let second = format!("`drain.radius`: `s` is not a unit for a quantity in m: {length}");
         for (problem, typed, told) in [
             ("barron", WEIGHT, Some("it has no weight")),
             ("cryer", WEIGHT, Some("it has no weight")),

@@ -98,16 +98,15 @@ pub fn refused_name(name: &str) -> Option<String> {
         && !name.contains("--");
     if !is_plain {
         return Some(
-            "take letters and digits, with single `-`, `_` or `.` between them, like `mesh-2.toml`"
-                .to_owned(),
+            "use letters and digits, with single `-`, `_` or `.` between them, like `mesh-2.toml`".to_owned(),
         );
     }
     if name.len() > LONGEST {
-        return Some(format!("it has {} letters: take {LONGEST} at most", name.len()));
+        return Some(format!("it has {} letters: {LONGEST} are the maximum", name.len()));
     }
-    TAKEN.contains(&name).then(|| {
-        format!("`{name}` is the name of a part of the report, of the golden values or of the tables")
-    })
+    TAKEN
+        .contains(&name)
+        .then(|| format!("`{name}` is reserved for the report, the golden values or the tables"))
 }
 
 #[cfg(test)]
@@ -175,7 +174,7 @@ mod tests {
         for name in ["terzaghi-mesh", "a", "63", "v1.2_b"] {
             assert_eq!(refused_name(name), None, "{name}");
         }
-        let plain = "take letters and digits, with single `-`, `_` or `.` between them, like `mesh-2.toml`";
+        let plain = "use letters and digits, with single `-`, `_` or `.` between them, like `mesh-2.toml`";
         let others = [
             "", ".", "..", ".hidden", "-a", "a-", "a.", "MyStudy", "ä", "a b", "a/b", "a\\b", "a\n", "a--b",
             "con:", "_a", "a-.b--c",
@@ -184,11 +183,12 @@ mod tests {
             assert_eq!(refused_name(name).as_deref(), Some(plain), "{name}");
         }
         assert_eq!(refused_name(&"a".repeat(100)), None);
-        assert_eq!(refused_name(&"a".repeat(101)).as_deref(), Some("it has 101 letters: take 100 at most"));
+        assert_eq!(
+            refused_name(&"a".repeat(101)).as_deref(),
+            Some("it has 101 letters: 100 are the maximum")
+        );
         for name in ["findings", "survival", "how", "profiles", "history", "columns"] {
-            let why = format!(
-                "`{name}` is the name of a part of the report, of the golden values or of the tables"
-            );
+            let why = format!("`{name}` is reserved for the report, the golden values or the tables");
             assert_eq!(refused_name(name), Some(why));
             assert_eq!(refused_name(&format!("{name}2")), None);
         }

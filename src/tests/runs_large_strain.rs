@@ -94,10 +94,7 @@ fn the_reference_of_a_load_at_once_is_refused_for_one_that_grows() {
     })
     .expect_err("a refusal")
     .to_string();
-    assert!(
-        told.contains("acts at once, and this column's grows") && told.contains("large-strain"),
-        "{told}"
-    );
+    assert!(told.contains("is sudden, but this column's grows") && told.contains("large-strain"), "{told}");
     assert!(told.contains("typed.toml:7") && told.contains('^'), "{told}");
 }
 

@@ -30,16 +30,16 @@ const IMPLICIT: &str = "integrator = ['implicit']\ncells = [4, 8, 16]";
 
 /// Scene, tables, sweep and expectation of a study, with ⏎ for the end of a line; what is wrong, and what helps.
 const COMPLAINTS: &str = r#"
-xie-leo ¦ output.references = ['xie-leo']⏎column.loading_time = 5.0 ¦ cells = [4] ¦  ¦ the load of `xie-leo` acts at once, and this column's grows ¦ compare it with "large-strain"
-at-rest ¦ column.strain = 0.1 ¦ cells = [4] ¦  ¦ no load acts in the problem `at-rest`: it cannot strain it ¦ leave `strain` out
-terzaghi ¦ column.strain = 0.1 ¦ cells = [4]⏎load = [1.0, 2.0] ¦  ¦ the column has a `load` and a `strain` ¦ leave one of them out: the load follows from the strain
-mandel ¦ column.dimensions = 1 ¦ cells = [10] ¦  ¦ `mandel` has two dimensions ¦ leave the key out: the plate presses across the direction in which the water flows
+xie-leo ¦ output.references = ['xie-leo']⏎column.loading_time = 5.0 ¦ cells = [4] ¦  ¦ the load of `xie-leo` is sudden, but this column's grows ¦ compare it with "large-strain"
+at-rest ¦ column.strain = 0.1 ¦ cells = [4] ¦  ¦ no load acts in the problem `at-rest`, so it has no strain ¦ leave `strain` out
+terzaghi ¦ column.strain = 0.1 ¦ cells = [4]⏎load = [1.0, 2.0] ¦  ¦ the column has a `load` and a `strain` ¦ leave one of them out: each determines the other
+mandel ¦ column.dimensions = 1 ¦ cells = [10] ¦  ¦ `mandel` has two dimensions ¦ leave the key out: the plate presses perpendicular to the flow of the water
 layered ¦ column = { height = 2.5, soils = [{ thickness = 3.0 }, { thickness = 1.5 }] } ¦ cells = [4] ¦  ¦ the layers are 4.5 m thick together, and the column is 2.5 m high: they must fill it ¦ make the column 4.5 m high, or the layers thinner
 layered ¦ column = { height = 2.5, soils = [{ thickness = 1.0 }, { thickness = 0.5 }] } ¦ cells = [4] ¦  ¦ the layers are 1.5 m thick together, and the column is 2.5 m high: they must fill it ¦ make the last layer 1.5 m thick, or the column 1.5 m high
 layered ¦ column.soils = [NINE] ¦ cells = [4] ¦  ¦ 9 layers of soil ¦ at most 8 are allowed
 terzaghi ¦ solver = [{ name = 'a', command = ['b'], result = '{out}/c', solve_seconds = 'LONG' }] ¦ cells = [4] ¦  ¦ the pattern has more than 500 letters ¦ write a short one, like "It took ([0-9.e+-]+) s"
 cosine-layer ¦  ¦ cells = [4, 8, 16] ¦ reference = 'none'⏎probe = 0.5⏎uncertainty = { below = 0.1 } ¦ a probe is for a field of a column that is compared with no reference ¦ add `reference = "none"`, or leave the key out
-terzaghi ¦  ¦ cells = [4, 8]⏎height = [1.0, 2.0] ¦ at = { cells = 8, below = 0.5 } ¦ the cases have several heights, and the expectation names none ¦ add the one that it is about, like `height = 2.0`
+terzaghi ¦  ¦ cells = [4, 8]⏎height = [1.0, 2.0] ¦ at = { cells = 8, below = 0.5 } ¦ the cases have several heights, but the expectation names none ¦ add the one that is meant, like `height = 2.0`
 terzaghi ¦  ¦ cells = [4, 8]⏎[[sweep]]⏎method = ['MPM']⏎integrator = ['implicit']⏎cells = [4, 8]⏎porosity = [0.4] ¦ method = 'GIMP'⏎porosity = 0.4⏎at = { cells = 8, below = 0.5 } ¦ no case of the study has `porosity = 0.4` and the other inputs of the expectation ¦ the cases have 0.3
 terzaghi ¦  ¦ cells = [4]⏎time_step = [{ seconds = 1.0 }, { seconds = 0.5 }] ¦ axis = 'time_step'⏎class = 'asymptotic'⏎at = { cells = 4, below = 0.5 } ¦ the bound names no level of its axis, or no bound ¦ write it like { cells = 10, below = 5.0e-3 }
 terzaghi ¦  ¦ cells = [4, 8] ¦ quantity = 'settlement'⏎norm = 'l2'⏎at = { cells = 8, below = 0.5 } ¦ a settlement has no `norm = "l2"` ¦ it is measured at the "surface", "relative" to the exact one: leave the key out
@@ -64,7 +64,7 @@ fn what_a_study_cannot_have_is_told_once_with_what_helps() {
         }
     }
     let told = said(&text("terzaghi", "task = 'stability'\ncolumn.self_weight = true", "cells = [4]", ""));
-    let why = "a weight does not change the critical step: it is that of the weightless column";
+    let why = "self-weight does not change the critical step: it is that of the weightless column";
     assert_eq!(told, [(why.to_owned(), "leave `self_weight` out of a study of stability".to_owned())]);
 }
 
@@ -105,18 +105,18 @@ fn a_method_is_what_its_choices_say_or_refused_with_the_choice_that_is_wrong() {
         (
             format!("{gimp}, pressure = 'points', quadrature = 'moments'"),
             "moments are fitted over cells, and the domains or splines of this basis reach beyond them",
-            "take the basis \"hat\", or leave `quadrature` out",
+            "use the basis \"hat\", or leave `quadrature` out",
         ),
         (
             format!("{gimp}, pressure = 'points', recovery = 'nodal', projection = 1.0"),
             "this recovery has no projection",
-            "leave `projection` out, or take the recovery \"ppp\"",
+            "leave `projection` out, or use the recovery \"ppp\"",
         ),
     ] {
         assert_eq!(of("terzaghi", &choices), Err((message.to_owned(), help.to_owned())), "{choices}");
     }
     let frozen = of("xie-leo", &format!("{gimp}, pressure = 'points', configuration = 'frozen'"));
-    assert_eq!(frozen.expect_err("large strain").1, "take \"updated\" or \"total\", or leave the key out");
+    assert_eq!(frozen.expect_err("large strain").1, "use \"updated\" or \"total\", or leave the key out");
     for (choices, name) in [
         (format!("{gimp}, pressure = 'points'"), "GIMP"),
         (format!("{gimp}, pressure = 'sri', recovery = 'constant'"), "GIMP-SRI"),
@@ -144,7 +144,7 @@ fn a_method_is_what_its_choices_say_or_refused_with_the_choice_that_is_wrong() {
             told.0, "the parameter of a projection is between 0.001 and 1000 times the published value",
             "{typed}"
         );
-        assert_eq!(told.1, "take 1, or leave it out");
+        assert_eq!(told.1, "use 1, or leave it out");
     }
 }
 

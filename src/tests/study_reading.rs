@@ -51,9 +51,9 @@ porosity = 0.3 ¦ law = 3 ¦ 4 ¦ `law` takes a word in quotes, not `3` ¦ write
 [4, 8] ¦ [4, 8]⏎time_step = [0.1] ¦ 8 ¦ `time_step` takes a table, not `0.1` ¦ write it like `time_step = [{ courant = 0.1 }]`
 [[sweep]] ¦ [sweep] ¦ 5 ¦ `sweep` takes a list, not `[sweep]` ¦ a block that may be repeated has double brackets: [[sweep]]
 title = "t"⏎ ¦  ¦ 1 ¦ `title` is missing in the study ¦ add `title = "..."`
-["GIMP"] ¦ ["TL-PPP-step"] ¦ 6 ¦ no method is called `TL-PPP-step` ¦ version 0.3 removed it: take `TL-PPP`
-[4, 8] ¦ [4, 8]⏎layers = [2] ¦ 8 ¦ unknown key `layers` ¦ it is called `sets` now
-[4, 8] ¦ [4, 8]⏎[[expect_case]]⏎one_layer_within = 1 ¦ 9 ¦ unknown key `one_layer_within` ¦ it is called `one_set_within` now
+["GIMP"] ¦ ["TL-PPP-step"] ¦ 6 ¦ no method is called `TL-PPP-step` ¦ version 0.3 removed it: use `TL-PPP`
+[4, 8] ¦ [4, 8]⏎layers = [2] ¦ 8 ¦ unknown key `layers` ¦ it is now called `sets`
+[4, 8] ¦ [4, 8]⏎[[expect_case]]⏎one_layer_within = 1 ¦ 9 ¦ unknown key `one_layer_within` ¦ it is now called `one_set_within`
 [4, 8] ¦ [4, 8]⏎[[expect]]⏎time_factor = 0.1⏎order = { minus = 1 } ¦ 10 ¦ `value` is missing in order ¦ add `value = 0.1`
 [4, 8] ¦ [4, 8]⏎[[result]]⏎name = "a"⏎files = ["b"] ¦ 8 ¦ `cells` is missing in result ¦ add `cells = [10]`
 [4, 8] ¦ [4, 8]⏎[[solver]]⏎name = "a"⏎result = "b" ¦ 8 ¦ `command` is missing in solver ¦ add `command = ["..."]`
@@ -122,7 +122,7 @@ cells = [4, 8] ¦ cells = [4, 8]⏎dt = [{ seconds = 0.1 }] ¦ did you mean `tim
 cells = [4, 8] ¦ cells = [4, 8]⏎timestep = [{ seconds = 0.1 }] ¦ did you mean `time_step`?
 cells = [4, 8] ¦ cells = [4, 8]⏎cell_size = [0.1] ¦ give the number of cells over the height, `cells`, or the height of the column, `height`
 cells = [4, 8] ¦ cells = [4, 8]⏎E = [1e6, 2e6] ¦ did you mean `youngs_modulus`?
-cells = [4, 8] ¦ cells = [4, 8]⏎end_time = [5.0] ¦ a run ends at its last output: `times` or `time_factors`
+cells = [4, 8] ¦ cells = [4, 8]⏎end_time = [5.0] ¦ a run ends at its last output: set `times` or `time_factors`
 ";
 
 #[test]
@@ -244,7 +244,7 @@ fn numbers_with_units_make_the_cases_of_plain_numbers() {
     assert_eq!(with_units.planned, plain.planned);
     assert_eq!((with_units.planned.len(), with_units.case_seconds), (4, 120.0));
     let told = refusal(&SOUND.replace("porosity = 0.3", "youngs_modulus = \"5 m\""));
-    let parts = ["t.toml:4:18", "^^^^^", "`m` is not a unit of what is measured in Pa", "\"10 kPa\""];
+    let parts = ["t.toml:4:18", "^^^^^", "`m` is not a unit for a quantity in Pa", "\"10 kPa\""];
     assert!(parts.iter().all(|part| told.contains(part)), "{told}");
     let told = refusal(&SOUND.replace("[4, 8]", "[4, 8]\nload = [5.0, \"2 days\"]"));
     assert!(told.contains("t.toml:8:14") && told.contains("not a unit"), "{told}");

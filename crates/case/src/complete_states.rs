@@ -30,7 +30,10 @@ fn lack_of(case: &Case, states: &[Snapshot]) -> Option<String> {
     let outputs = &case.time_factors;
     if states.len() != outputs.len() {
         let left = count_of(states.len(), "state", "states");
-        return Some(format!("the solver left {left} for {}", count_of(outputs.len(), "output", "outputs")));
+        return Some(format!(
+            "the solver returned {left} for {}",
+            count_of(outputs.len(), "output", "outputs")
+        ));
     }
     outputs.iter().zip(states).find_map(|(output, state)| {
         let time_factor = state.time / case.seconds_per_time_factor();
@@ -45,7 +48,7 @@ fn lack_of_state(state: &Snapshot) -> Option<String> {
     let kinds = [("points", &state.points), ("centres", &state.centres), ("nodes", &state.nodes)];
     let is_bare = |samples: &Samples| samples.initial_height.is_empty();
     if kinds.iter().all(|(_, samples)| is_bare(samples)) && state.settlement.is_nan() {
-        return Some("there is no sample and no settlement".to_owned());
+        return Some("there is neither a sample nor a settlement".to_owned());
     }
     kinds.into_iter().find_map(|(kind, samples)| {
         lack_of_samples(samples)
@@ -109,14 +112,14 @@ mod tests {
             outcome.status.failure().map(|failure| failure.reason.clone())
         };
         let rows: [(Change<'_>, &str); 10] = [
-            (&|states| states.clear(), "the solver left 0 states for 1 output"),
-            (&|states| states.extend_from_within(..), "the solver left 2 states for 1 output"),
+            (&|states| states.clear(), "the solver returned 0 states for 1 output"),
+            (&|states| states.extend_from_within(..), "the solver returned 2 states for 1 output"),
             (&|states| states[0].time *= 1.002, "at T_v = 0.1, the state is that of T_v = 0.1002"),
             (&|states| states[0].time *= 0.998, "at T_v = 0.1, the state is that of T_v = 0.0998"),
             (&|states| states[0].time = f64::NAN, "at T_v = 0.1, the state is that of T_v = NaN"),
             (
                 &|states| states[0].points = Samples::default(),
-                "at T_v = 0.1, there is no sample and no settlement",
+                "at T_v = 0.1, there is neither a sample nor a settlement",
             ),
             (
                 &|states| states[0].points.pressure.truncate(1),

@@ -66,7 +66,7 @@ impl Contender {
     pub fn unfit(&self, case: &Case) -> Option<&'static str> {
         let is_wave = matches!(case.scene.clock, Clock::Wave | Clock::Consolidation) && case.scene.waves;
         (is_wave && self.method.recovery == Recovery::Ppp).then_some(
-            "the published parameter of the projection is quasi-static (White & Borja 2008): its storage slows waves",
+            "the published projection parameter is quasi-static (White & Borja 2008): its storage slows waves",
         )
     }
 

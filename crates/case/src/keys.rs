@@ -215,7 +215,7 @@ const FILLING: Kind = Kind::Number(Range::Within(
     f64::MIN_POSITIVE,
     1.0,
     "`points.filling` is {}",
-    "it is the share of the top cell that is filled: more than 0, at most 1",
+    "it is the filled fraction of the top cell: more than 0, at most 1",
 ));
 
 const STRETCH: Kind = Kind::Number(Range::Within(
@@ -228,7 +228,7 @@ const TURN: Kind = Kind::Number(Range::Within(
     -4.0,
     4.0,
     "a prescribed angle of {}",
-    "larger angles need finer meshes than there are: it lies between -4 and 4 rad",
+    "larger angles need finer meshes than are feasible: it lies between -4 and 4 rad",
 ));
 
 // One row per key: name, tables, values, unit, field of the case; meaning.
@@ -503,7 +503,7 @@ mod tests {
             _ => panic!("{name} has other values"),
         };
         let half = "it lies between -0.5 and 0.5 point spacings";
-        let filled = "it is the share of the top cell that is filled: more than 0, at most 1";
+        let filled = "it is the filled fraction of the top cell: more than 0, at most 1";
         let fold = "from 1 on it folds the body: it lies between -0.99 and 0.99";
         for (name, low, high, said, right) in [
             ("offset", -0.5, 0.5, "points shifted by {} spacings", half),

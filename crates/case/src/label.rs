@@ -76,7 +76,7 @@ impl Case {
         .into_iter()
         .filter(|(value, usual, _)| value != usual)
         .map(|(value, _, what)| format!("{what} {value}"));
-        let unequal = points.alternating.then(|| "one point more in every second cell".to_owned());
+        let unequal = points.alternating.then(|| "one more point in every second cell".to_owned());
         sets.into_iter().chain(places).chain(unequal).collect()
     }
 

@@ -166,7 +166,7 @@ impl Case {
         let said = [
             (
                 method.is_some_and(|method| method.configuration == Some(Configuration::Total)),
-                "nothing moves here, so shape functions on the initial configuration (`TL-`) are those of the plain method",
+                "nothing moves here, so shape functions on the initial configuration (`TL-`) are the same as without",
             ),
             (
                 method.is_some_and(|method| method.memory == Memory::Cells),
@@ -186,7 +186,7 @@ impl Case {
             ),
             (
                 plain.column.points.sets != self.column.points.sets,
-                "nothing moves here and the two point sets are alike, so they are solved as one set",
+                "nothing moves here and the two point sets are identical, so they are solved as one",
             ),
         ];
         said.into_iter().filter_map(|(is_idle, sentence)| is_idle.then_some(sentence)).collect()

@@ -36,22 +36,25 @@ pub fn parts(method: &Method) -> Vec<MethodPart> {
         parts.push(part("recovery", method.recovery.name(), of_recovery(method.recovery)));
     }
     if method.quadrature == Quadrature::Moments {
-        let fitted = "points of a cell share volumes that integrate constant and linear fields exactly, wherever they lie in it";
+        let fitted = "integration volumes of the points integrate constant and linear fields exactly, \
+                      wherever the points lie in the cell";
         parts.push(part("quadrature", method.quadrature.name(), (fitted, "Müller, Kummer & Oberlack 2013")));
     }
     if method.memory == Memory::Cells {
-        let cells = "stress, pressure and volume follow the parabola through the means of the surrounding cells while points move";
+        let cells = "stress, pressure and volume of moving points follow the parabola through the means of \
+                     the surrounding cells";
         parts.push(part("memory", method.memory.name(), (cells, "this program")));
     }
     if (method.strain, method.recovery) == (StrainGradient::Bbar, Recovery::Nodal) {
-        let hybrid = "both together are a hybrid that no source has: the published averaging over nodes cures locking, and is no pressure field";
+        let hybrid = "the combination is a hybrid found in no source: the published averaging over nodes \
+                      cures locking, but is not a pressure field";
         parts.push(part("hybrid", "", (hybrid, "cf. Zhao, Jiang & Choo 2023")));
     }
     if let Some(configuration) = method.configuration {
         parts.push(part("configuration", configuration.name(), of_configuration(configuration)));
     }
     if method.projection != FULL_PROJECTION {
-        let scaled = "the parameter of the pressure projection is scaled against that of its source";
+        let scaled = "the parameter of the pressure projection is scaled from its published value";
         parts.push(part("projection", "", (scaled, "")));
     }
     parts
@@ -74,11 +77,12 @@ fn of_basis(basis: Basis) -> (&'static str, &'static str) {
             "linear shape functions are averaged over the corners of domains that stretch, rotate and shear with the soil",
             "Sadeghirad, Brannon & Burghardt 2011",
         ),
-        Basis::Bspline2 => {
-            ("shape functions are quadratic B-splines, taken at the points", "Steffen, Kirby & Berzins 2008")
-        }
+        Basis::Bspline2 => (
+            "shape functions are quadratic B-splines, evaluated at the points",
+            "Steffen, Kirby & Berzins 2008",
+        ),
         Basis::Bspline3 => {
-            ("shape functions are cubic B-splines, taken at the points", "Steffen, Kirby & Berzins 2008")
+            ("shape functions are cubic B-splines, evaluated at the points", "Steffen, Kirby & Berzins 2008")
         }
     }
 }
@@ -88,18 +92,20 @@ fn of_strain(strain: StrainGradient) -> (&'static str, &'static str) {
     match strain {
         StrainGradient::Standard => ("strains come from the gradient of the shape functions", ""),
         StrainGradient::Cmpm => (
-            "strains come from a cubic through the nodes of the cell and of its neighbours (composite MPM)",
+            "strains come from a cubic through the nodes of the cell and its neighbours (composite MPM)",
             "González Acosta, Vardon & Hicks 2017",
         ),
         StrainGradient::CmpmEnds => (
-            "strains come from the composite cubic between the ends of the point's domain, of CPDI and not of GIMP, so that they add up to the displacement of the surface",
+            "strains come from the composite cubic between the ends of the point's CPDI domain (not GIMP), \
+             so that they add up to the displacement of the surface",
             "after González Acosta, Vardon & Hicks 2017",
         ),
         StrainGradient::Bbar => {
-            ("the skeleton takes the volumetric strain that drives the pore pressure (B-bar)", BBAR)
+            ("the skeleton uses the volumetric strain that drives the pore pressure (B-bar)", BBAR)
         }
         StrainGradient::CmpmBbar => (
-            "strains come from the composite cubic, and their volumetric part is that which drives the pore pressure (B-bar)",
+            "strains come from the composite cubic, but their volumetric part is the one that drives the \
+             pore pressure (B-bar)",
             "González Acosta, Vardon & Hicks 2017; Hughes 1980; Coombs et al. 2018",
         ),
     }
@@ -108,27 +114,29 @@ fn of_strain(strain: StrainGradient) -> (&'static str, &'static str) {
 fn of_pressure(pressure: PressureIntegration) -> (&'static str, &'static str) {
     match pressure {
         PressureIntegration::Points => {
-            ("the pore pressure follows the divergence at each point (full integration)", "")
+            ("the pore pressure follows from the divergence at each point (full integration)", "")
         }
         PressureIntegration::Sri => (
-            "the pore pressure follows the divergence at the centre of the cell (selective reduced integration)",
+            "the pore pressure follows from the divergence at the cell centre (selective reduced integration)",
             "Zheng et al. 2021",
         ),
-        PressureIntegration::Mean => {
-            ("the pore pressure follows the mean divergence over the points of a cell", "Mast et al. 2012")
-        }
+        PressureIntegration::Mean => (
+            "the pore pressure follows from the mean divergence over the points of a cell",
+            "Mast et al. 2012",
+        ),
     }
 }
 
 fn of_recovery(recovery: Recovery) -> (&'static str, &'static str) {
     match recovery {
-        Recovery::Constant => ("every point takes the pressure increment of its cell", ""),
+        Recovery::Constant => ("every point gets the pressure increment of its cell", ""),
         Recovery::Patch => (
-            "pressure increments come back to the points by a plane fitted to the surrounding cells (moving least squares)",
+            "pressure increments are recovered at the points from a plane fitted to the surrounding cells \
+             (moving least squares)",
             "Zienkiewicz & Zhu 1992; Zheng et al. 2021",
         ),
         Recovery::PatchSoils => (
-            "the fitted plane uses only surrounding cells that hold the soil of the point",
+            "the fitted plane uses only surrounding cells with the soil of the point",
             "after Zheng et al. 2021",
         ),
         Recovery::Nodal => (
@@ -136,7 +144,7 @@ fn of_recovery(recovery: Recovery) -> (&'static str, &'static str) {
             "Detournay & Dzik 2006; Chen et al. 2018",
         ),
         Recovery::NullSpace => (
-            "the part of the pressure that no nodal force feels is removed",
+            "the part of the pressure that causes no nodal force is removed",
             "Gritton & Berzins 2017; Tran & Sołowski 2019",
         ),
         Recovery::Ppp => (

@@ -235,8 +235,8 @@ impl<'a> Attachment<'a> {
             note(
                 about,
                 format!(
-                    "it reports {own} s, more than the {wall} s of its run: which unit has the number that \
-                     `solve_seconds` matches (`solve_unit = \"ms\"`)?"
+                    "it reports {own} s, more than the {wall} s of its run: in which unit is the number \
+                     that `solve_seconds` matches (`solve_unit = \"ms\"`)?"
                 ),
             );
         }

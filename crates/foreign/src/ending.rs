@@ -83,7 +83,8 @@ pub fn of_process(run: &Finished, solver: &ExternalSolver) -> Option<Failure> {
         Ending::NotStarted(error) => (
             FailureKind::NotStartable,
             format!(
-                "`{}` could not be started: {error}; the command in the study is wrong, or the program is not here",
+                "`{}` could not be started: {error}; the command in the study is wrong, or the program is \
+                 not installed",
                 solver.command.first().map_or("", String::as_str)
             ),
         ),

@@ -114,7 +114,7 @@ pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadRe
     let runs = runs_of(&given, mapping, SolvedBody::of(case)).map_err(|error| why_unread(&error))?;
     if runs.len() > 1 {
         return Err(Unread::Unreadable(format!(
-            "the files hold {} results, of different meshes or names: let the study's `result` name one",
+            "the files hold {} results, of different meshes or names: `result` in the study must name one",
             runs.len()
         )));
     }
@@ -139,7 +139,7 @@ pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadRe
     }
     if let Some(sample) = twice(&run.states, sample) {
         return Err(Unread::Unreadable(format!(
-            "quantities stand at different {}: an attached solver writes those of one kind at the same places",
+            "quantities lie at different {}: an attached solver writes all quantities of one kind at the same places",
             sample.name()
         )));
     }
@@ -195,8 +195,8 @@ fn other_mesh(case: &Case, sample: Sample, state: &SampledState) -> Option<Strin
     let is_even = gaps().all(|gap| gap >= (1.0 - EVEN) * widest);
     (heights > most && is_even).then(|| {
         format!(
-            "the {} of the result stand at {heights} heights, and {} cells have {most}: it is another mesh's, or its \
-             places are no {} (`sample` in the mapping; `rows` chooses corners)",
+            "the {} of the result lie at {heights} heights, but {} cells have {most}: it is the result of \
+             another mesh, or its places are not {} (`sample` in the mapping; `rows` selects corners)",
             sample.name(),
             case.cells,
             sample.name()
@@ -215,7 +215,7 @@ fn are_on_a_face(case: &Case, state: &SampledState) -> bool {
 fn other_cells(case: &Case, shown: Option<usize>) -> Option<String> {
     let cells = shown.filter(|cells| *cells != case.cells)?;
     Some(format!(
-        "the mesh of the result has {cells} cells over the height, and the case asks for {}",
+        "the mesh of the result has {cells} cells over the height, but the case asks for {}",
         case.cells
     ))
 }
@@ -341,7 +341,7 @@ mod tests {
         for (shown, told) in [(1, true), (3, true), (4, false), (5, true), (40, true)] {
             let found = other_cells(&case, Some(shown));
             assert_eq!(found.is_some(), told, "{found:?}");
-            let sentence = format!("has {shown} cells over the height, and the case asks for 4");
+            let sentence = format!("has {shown} cells over the height, but the case asks for 4");
             assert!(found.is_none_or(|found| found.ends_with(&sentence)), "{sentence}");
         }
         assert_eq!(other_cells(&case, None), None, "a table shows no cells");
@@ -414,18 +414,20 @@ mod tests {
     fn a_result_that_cannot_be_that_of_its_case_is_told_why() {
         let results = results();
         let [table, arrays, points, centres] = mappings();
-        let cut = "cut.csv does not end with a line break, so it may be cut inside its last number: end the last line with one";
+        let cut = "cut.csv does not end with a line break, so it may be cut off inside its last number: end \
+                   the last line with one";
         let stand = |kind: &str, heights: usize, most: usize| {
             format!(
-                "at T_v = 0.1, the {kind} of the result stand at {heights} heights, and 4 cells have {most}: it is another \
-                 mesh's, or its places are no {kind} (`sample` in the mapping; `rows` chooses corners)"
+                "at T_v = 0.1, the {kind} of the result lie at {heights} heights, but 4 cells have {most}: \
+                 it is the result of another mesh, or its places are not {kind} (`sample` in the mapping; \
+                 `rows` selects corners)"
             )
         };
-        let lacking = "there is no `p` at any time; to leave it out, call `score --without pressure`, or write `p = \"\"` to \
-                       [columns] of a mapping";
-        let other_mesh = "the mesh of the result has 5 cells over the height, and the case asks for 4";
+        let lacking = "there is no `p` at any time; to leave it out, call `score --without pressure`, or \
+                       write `p = \"\"` into [columns] of a mapping";
+        let other_mesh = "the mesh of the result has 5 cells over the height, but the case asks for 4";
         let several =
-            "the files hold 2 results, of different meshes or names: let the study's `result` name one";
+            "the files hold 2 results, of different meshes or names: `result` in the study must name one";
         for (mapping, names, told) in [
             (&table, &["none.csv"][..], "no file"),
             (&table, &["a.csv", "none.csv"], "no file"),

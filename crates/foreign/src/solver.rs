@@ -49,7 +49,7 @@ pub const SOLVE_UNITS: [(&str, f64); 4] = [("s", 1.0), ("ms", 1e-3), ("min", 60.
 /// What stands for values of a case in commands, environment and result.
 pub const PLACEHOLDERS: [(&str, &str); 7] = [
     ("case", "path of the case file, case.json"),
-    ("out", "fresh folder in which the solver is started and leaves its result"),
+    ("out", "fresh folder in which the solver is started and writes its result"),
     ("study", "folder of the study file"),
     ("cells", "cells over the height"),
     ("points_per_cell", "material points per cell and direction"),

@@ -235,7 +235,7 @@ pub fn in_si(text: &str, si: &str) -> Result<f64, (String, String)> {
         return Err((format!("the unit `{symbol}` is not known"), help));
     };
     if Some(unit.dimension) != wanted {
-        return Err((format!("`{symbol}` is not a unit of what is measured in {si}"), help(example)));
+        return Err((format!("`{symbol}` is not a unit for a quantity in {si}"), help(example)));
     }
     let value = number.parse::<f64>().unwrap_or(f64::NAN) * unit.up / unit.down;
     match shifted(value, unit.tens) {
@@ -247,7 +247,7 @@ pub fn in_si(text: &str, si: &str) -> Result<f64, (String, String)> {
 /// The share that a percentage is: `1 %` is `0.01`.
 fn share(text: &str, number: &str, symbol: &str) -> Result<f64, (String, String)> {
     let help =
-        "write a share as a plain number, like 0.01, or a percentage in quotes, like \"1 %\"".to_owned();
+        "write a fraction as a plain number, like 0.01, or a percentage in quotes, like \"1 %\"".to_owned();
     let value = number.parse::<f64>().ok().filter(|_| symbol == SHARE).and_then(|value| shifted(value, -2));
     match value {
         Some(value) if value.is_finite() => Ok(value),
@@ -371,7 +371,7 @@ mod tests {
     #[test]
     fn a_unit_of_another_kind_and_an_unknown_one_are_refused_with_what_would_be_right() {
         for (text, si, message, help) in [
-            ("5 m", "Pa", "`m` is not a unit of what is measured in Pa", "\"10 kPa\""),
+            ("5 m", "Pa", "`m` is not a unit for a quantity in Pa", "\"10 kPa\""),
             (
                 "5 mpa",
                 "Pa",
@@ -384,7 +384,7 @@ mod tests {
             ("1,5 kPa", "Pa", "has a comma in its number", "write a decimal point: \"1.5 kPa\""),
             ("1,500 kPa", "Pa", "has a comma in its number", "\"1.500 kPa\", or no separator: \"1500 kPa\""),
             ("5 mPa", "Pa", "the unit `mPa` is not known", "\"5 MPa\""),
-            ("5 m/s2", "m/s", "`m/s2` is not a unit of what is measured in m/s", "\"10 m/s\""),
+            ("5 m/s2", "m/s", "`m/s2` is not a unit for a quantity in m/s", "\"10 m/s\""),
             ("kPa", "Pa", "`kPa` is not a number with a unit", "\"10 kPa\""),
             ("5", "s", "`5` is not a number with a unit", "\"10 s\""),
             ("1e400 kPa", "Pa", "is not a finite number", ""),

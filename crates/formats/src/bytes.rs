@@ -25,7 +25,7 @@ impl Budget {
     pub(crate) fn take(&mut self, bytes: u64) -> Result<(), String> {
         let left = self.left.checked_sub(bytes);
         self.left = left.ok_or_else(|| {
-            format!("it declares {bytes} bytes, and a file of its size may hold {} more", self.left)
+            format!("it declares {bytes} bytes, but a file of its size can hold only {} more", self.left)
         })?;
         Ok(())
     }

@@ -101,7 +101,7 @@ pub struct Frame {
 
 /// A file has other points than the one that it is joined to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("it has other points ({points}) than the file that it is joined to ({known})")]
+#[error("its points ({points}) differ from those of the file that it is joined to ({known})")]
 pub struct OtherPoints {
     /// Points that it has.
     pub points: usize,

@@ -215,7 +215,7 @@ impl Listing<'_> {
                     continue;
                 }
                 Some(_) => {
-                    let why = format!("it lists {} at two times: a state has one", file.display());
+                    let why = format!("it lists {} at two times, but a state has only one", file.display());
                     return Err(refused(why));
                 }
                 None => {}

@@ -183,7 +183,8 @@ fn axis_of(array: &Array, usage: &Use, count: usize, places: Option<usize>) -> R
         _ if is_row => Ok(Over::Row),
         ([axis], true) if usage.has_component && lengths.len() == 2 && *axis == 0 && count > 1 => {
             Err(format!(
-                "`{name}` has the shape {} for {count} times, and the mapping takes one of its columns: say which axis is which, \
+                "`{name}` has the shape {} for {count} times, and the mapping uses one of its columns: \
+                 state which axis is which, \
              `{name}[time, node]` or `{name}[node, time]`",
                 shape_told(&axes)
             ))
@@ -192,7 +193,8 @@ fn axis_of(array: &Array, usage: &Use, count: usize, places: Option<usize>) -> R
         // A single time leaves nothing to choose.
         ([first, _], _) if count == 1 => Ok(Over::Axis(*first)),
         ([_, _], _) => Err(format!(
-            "`{name}` has the shape {} for {count} times and as many places: say which axis is which, `{name}[time, node]` or \
+            "`{name}` has the shape {} for {count} times and as many places: state which axis is which, \
+             `{name}[time, node]` or \
              `{name}[node, time]`",
             shape_told(&axes)
         )),
@@ -200,7 +202,7 @@ fn axis_of(array: &Array, usage: &Use, count: usize, places: Option<usize>) -> R
             let later = lengths.iter().rposition(|axis| *axis == count).filter(|axis| *axis > 0);
             let why = match later {
                 Some(axis) if lengths.len() > 2 || usage.has_component => format!(
-                    "their number is that of axis {}: say which axis is which, like `{name}[1, node, time]`",
+                    "their number is that of axis {}: state which axis is which, like `{name}[1, node, time]`",
                     axis + 1
                 ),
                 _ => "no axis has their number".to_owned(),

@@ -83,7 +83,8 @@ impl Encoding<'_> {
                 let size = expected.and_then(|expected| expected.checked_mul(scalar.size()));
                 if let Some((bytes, declared)) = size.and_then(|size| self.misdeclared(&joined, size)) {
                     doubt = Some(format!(
-                        "its header declares {declared} bytes, and {} are there, as many as its numbers take: they are read",
+                        "its header declares {declared} bytes, but there are {}, as many as its numbers \
+                         need: they are read",
                         bytes.len()
                     ));
                     budget.take(8 * (bytes.len() / scalar.size()) as u64)?;

@@ -308,7 +308,7 @@ fn points_per_element(topology: Node, item: Node, kind: &str) -> Result<usize, S
     let of_shape = shape_of(item)?.get(1).copied();
     let usual = if kind == "polyvertex" { Some(1) } else { None };
     let own = typed.or(of_shape).or(usual).filter(|own| *own > 0);
-    own.ok_or_else(|| format!("a topology of the type `{kind}` does not say its points per element"))
+    own.ok_or_else(|| format!("a topology of the type `{kind}` does not state its points per element"))
 }
 
 /// The type of a geometry or topology in small letters; older files name the attribute otherwise.

@@ -152,8 +152,8 @@ impl Checker<'_> {
         {
             self.complain(
                 range.span(),
-                format!("the soil of the problem `{}` moves by itself", subject.scene.name),
-                "a spurious velocity is measured in the problem \"at-rest\"",
+                format!("the soil of the problem `{}` moves on its own", subject.scene.name),
+                "a spurious velocity is measured only in the problem \"at-rest\"",
             );
         }
         let selection = self.selection(&table.inputs, subject.scene);
@@ -210,8 +210,8 @@ impl Checker<'_> {
         if height.is_none() && self.complaints.is_empty() {
             self.complain(
                 place,
-                "the cases have several heights, and the expectation names none",
-                "add the one that it is about, like `height = 2.0`",
+                "the cases have several heights, but the expectation names none",
+                "add the one that is meant, like `height = 2.0`",
             );
         }
         height
@@ -243,7 +243,7 @@ impl Checker<'_> {
             (
                 reference,
                 own_word == Some(NEXT_FINER) && table.axis != Axis::TimeStep,
-                "the next finer level has other places".to_owned(),
+                "the next finer level has its samples at other places".to_owned(),
                 "\"next-finer\" is for `axis = \"time_step\"`; a settlement or a `probe` takes \"none\"",
             ),
             (
@@ -388,7 +388,7 @@ impl Checker<'_> {
         if below >= 1.0 && level.above.is_none() {
             self.warn(&Diagnostic::at(
                 level.span(),
-                format!("an error below {below} is one of {} %, which a result of zero has", 100.0 * below),
+                format!("an error below {below} means {} %, which even a result of zero has", 100.0 * below),
                 format!("did you mean \"{below} %\"?"),
             ));
         }
@@ -512,7 +512,8 @@ impl Checker<'_> {
         {
             self.complain(
                 table.span(),
-                "errors against an exact solution cannot show an order in time: they stop at the error of the mesh",
+                "errors against an exact solution cannot show an order in time: they stop falling at the \
+                 error of the mesh",
                 format!(
                     "add `reference = \"{NEXT_FINER}\"`, the differences from the next finer step, or name the exact solution where \
                      the mesh is fine enough for it"

@@ -88,7 +88,7 @@ impl Checker<'_> {
                 continue;
             }
             let help = if factor > 0.0 && factor < 1.0 {
-                format!("it is too early for any step: take 0, or {LEAST_TIME_FACTOR:e} and later")
+                format!("it is too early for any step: use 0, or {LEAST_TIME_FACTOR:e} and later")
             } else {
                 "T_v = c_v t/H² lies between 0 and 100; the column is consolidated at 2".to_owned()
             };
@@ -189,7 +189,7 @@ impl Checker<'_> {
                         "{} s is T_v = {first:.3e} to {last:.3e} in the cases of this expectation",
                         typed(**time)
                     ),
-                    "name the soil and the height that it is about, or its `time_factor`",
+                    "name the soil and height that are meant, or the `time_factor`",
                 );
                 None
             }
@@ -295,7 +295,7 @@ mod tests {
         let expect = |time: &str| format!("[[expect]]\nmethod = 'MPM'\n{time}\norder = {{ value = 1.0 }}");
         for (output, sweep, rest, said) in [
             ("times = []", "", String::new(), "no time; name at least one"),
-            ("times = ['30 kPa']", "", String::new(), "is not a unit of what is measured in s"),
+            ("times = ['30 kPa']", "", String::new(), "is not a unit for a quantity in s"),
             ("times = [-5.0]", "", String::new(), "a time of -5 s; 0 is the undrained start"),
             (
                 "times = ['9000 years']",

@@ -167,7 +167,7 @@ impl Checker<'_> {
                 table.files.span(),
                 cells.len() > 1 && !names_mesh,
                 format!("{} meshes have the same files", cells.len()),
-                "write `{cells}` where their names differ, or one [[result]] a mesh",
+                "write `{cells}` where their names differ, or one [[result]] per mesh",
             ),
         ] {
             if is_wrong {
@@ -225,7 +225,7 @@ impl Checker<'_> {
         for (name, value) in &table.env {
             if name.is_empty() || name.contains(['=', '\0']) {
                 let message = format!("`{}` cannot be the name of a variable", name.escape_debug());
-                let help = "write the name and the value apart, like env = { OMP_NUM_THREADS = \"1\" }";
+                let help = "write name and value separately, like env = { OMP_NUM_THREADS = \"1\" }";
                 self.complain(value.span(), message, help);
             }
         }
@@ -239,7 +239,7 @@ impl Checker<'_> {
             self.complain(
                 result.span(),
                 "the result must lie below `{out}`, which is empty at the start",
-                "write it like \"{out}/result.csv\", and have the adapter write it there",
+                "write it like \"{out}/result.csv\", and let the adapter write it there",
             );
         }
     }

@@ -206,7 +206,7 @@ impl Checker<'_> {
         for typed in table.inputs.list("cells") {
             let TypedInput::Count(cells) = **typed else { continue };
             if let Some(gap) = usize::try_from(cells).ok().and_then(|cells| gaps.get(&cells)) {
-                let help = "take a number of cells that divides both sides into squares, or change a side";
+                let help = "use a number of cells that divides both sides into squares, or change a side";
                 self.complain(typed.span(), gap.as_str(), help);
             }
         }
@@ -220,7 +220,7 @@ impl Checker<'_> {
                     case.points_per_cell,
                     1e-9 * bytes
                 ),
-                format!("take fewer: {:.0} GB are the maximum", 1e-9 * MOST_BYTES),
+                format!("use fewer: {:.0} GB are the maximum", 1e-9 * MOST_BYTES),
             );
         }
         if let Some(place) = place("water_per_cell").filter(|_| !has_water_points) {

@@ -35,7 +35,7 @@ mod point_sets {
         }
         for (scene, why) in [
             ("xie-leo\"\ncolumn.self_weight = true #", "the weight of a column needs points"),
-            ("mandel\"\n#", "tied to one point set"),
+            ("mandel\"\n#", "needs a single point set"),
         ] {
             let error = checked(scene, "\"GIMP\"", "sets = [2]\nintegrator = [\"explicit\"]").expect_err(why);
             assert!(error.contains(why), "{error}");
@@ -71,7 +71,7 @@ mod point_sets {
         let scene = "xie-leo\"\ncolumn.self_weight = true #";
         let error = checked(scene, "\"GIMP\"", "offset = [0.25]").expect_err("a shifted lattice");
         assert!(
-            error.contains("do not integrate a weight exactly") && error.contains("--> t.toml:"),
+            error.contains("do not integrate self-weight exactly") && error.contains("--> t.toml:"),
             "{error}"
         );
         assert!(checked(scene, "\"GIMP\"", "jitter = [0.1]").is_ok());

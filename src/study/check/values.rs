@@ -68,7 +68,7 @@ impl Checker<'_> {
             }
         }
         for (place, name, other) in complaints {
-            let message = format!("`{name}` is given, and `{other}`, which stands for the same");
+            let message = format!("`{name}` and `{other}` are both given, but stand for the same");
             self.complain(place, message, "leave one of the two out");
         }
     }
@@ -91,7 +91,7 @@ impl Checker<'_> {
             let gone = GONE.iter().find(|(old, _)| name.ends_with(old));
             let help = gone.map_or_else(
                 || one_of(name, &names),
-                |(old, new)| format!("version 0.3 removed it: take `{}`", name.replace(old, new)),
+                |(old, new)| format!("version 0.3 removed it: use `{}`", name.replace(old, new)),
             );
             self.complain(span, format!("no method is called `{name}`"), help);
             return None;
@@ -120,7 +120,7 @@ impl Checker<'_> {
             return None;
         }
         if let Some(why) = quadrature.refuses(basis) {
-            self.complain(span, why, "take the basis \"hat\", or leave `quadrature` out");
+            self.complain(span, why, "use the basis \"hat\", or leave `quadrature` out");
             return None;
         }
         let projection = self.projection_of(table, recovery)?;
@@ -141,11 +141,11 @@ impl Checker<'_> {
     fn projection_of(&mut self, table: &MethodTable, recovery: Recovery) -> Option<u32> {
         let Some(typed) = &table.projection else { return Some(FULL_PROJECTION) };
         let refusal = if !recovery.is_projected() {
-            ("this recovery has no projection", "leave `projection` out, or take the recovery \"ppp\"")
+            ("this recovery has no projection", "leave `projection` out, or use the recovery \"ppp\"")
         } else if !(0.001..=1000.0).contains(&**typed) {
             (
                 "the parameter of a projection is between 0.001 and 1000 times the published value",
-                "take 1, or leave it out",
+                "use 1, or leave it out",
             )
         } else {
             #[expect(
@@ -168,17 +168,17 @@ impl Checker<'_> {
     ) -> Option<SolverName> {
         let configuration = method.built_in().and_then(|method| method.configuration);
         let refusal = if let Some(why) = configuration.and_then(|kind| scene.refuses_configuration(kind)) {
-            (why, "take \"updated\" or \"total\", or leave the key out")
+            (why, "use \"updated\" or \"total\", or leave the key out")
         } else if method.built_in().is_none() && scene.motion.is_some() {
             (
-                "an external solver does not receive the body forces and the source of a manufactured solution",
-                "take a method of this program",
+                "an attached solver does not receive the body forces and the source of a manufactured solution",
+                "use a method of this program",
             )
         } else if let Some(why) = method.built_in().and_then(|method| scene.refuses_method(method)) {
             let help = if method.built_in().is_some_and(|method| method.has_projection()) {
-                "take \"GIMP-SRI-patch\", whose pressure follows from the strains of the cells"
+                "use \"GIMP-SRI-patch\", whose pressure follows from the strains of the cells"
             } else {
-                "take \"GIMP-SRI-patch\", or another method without `TL-`"
+                "use \"GIMP-SRI-patch\", or another method without `TL-`"
             };
             (why, help)
         } else {
@@ -196,7 +196,7 @@ impl Checker<'_> {
         let [(StepKind { word, make, least, why }, value)] = given.as_slice() else {
             self.complain(
                 span,
-                format!("a time step by {} rules", given.len()),
+                format!("a time step with {} rules", given.len()),
                 "give exactly one: { stable = 0.5 }, { courant = 0.5 }, { seconds = 1e-6 }, { growth = 0.05 } or \
                  { tolerance = 1e-4 }",
             );
@@ -204,7 +204,7 @@ impl Checker<'_> {
         };
         let number = ***value;
         let (message, help) = if number > 0.0 && number < *least {
-            (format!("a time step by `{word} = {number:e}`"), format!("{why}: at least {least:e}"))
+            (format!("a time step with `{word} = {number:e}`"), format!("{why}: at least {least:e}"))
         } else if *word == "growth" && number.is_finite() && number > 1.0 {
             let message = format!("a step of {number} times the elapsed time");
             (message, "a growth is a fraction: 0.05 is 5 %, and 1 is the maximum".to_owned())
@@ -229,7 +229,7 @@ impl Checker<'_> {
         } else if is_chord && scene.motion.is_some() {
             self.complain(
                 span,
-                "the chord mean belongs to a flux out of a drained surface, and a manufactured solution has none",
+                "the chord mean is for a flux out of a drained surface, and a manufactured solution has none",
                 "leave it out",
             );
         } else {

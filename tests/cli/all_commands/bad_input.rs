@@ -110,7 +110,11 @@ fn a_value_without_a_reference_must_be_one_number_and_nothing_else_has_an_uncert
             "positive number",
         ),
         ("quantity = \"settlement\"\nreference = \"none\"", "demands nothing"),
-        ("reference = \"next-finer\"\norder = { value = 2.0 }", "the next finer level has other places"),
+        (
+            "reference = \"next-finer\"\norder = { value = 2.0 }",
+            "the next finer level has its samples at \
+          other places",
+        ),
     ] {
         assert_says(&refused_expectation(keys), &[part]);
     }
@@ -199,7 +203,7 @@ fn time_steps_that_are_none_are_refused() {
     let told = refused_with("{ stable = 0.8 }", "{ stable = 0.8, seconds = 1e-6 }");
     assert_snapshot("bad_input_two_step_rules", &told);
     for (rule, parts) in [
-        ("{}", ["a time step by 0 rules", "give exactly one"]),
+        ("{}", ["a time step with 0 rules", "give exactly one"]),
         ("{ stable = -0.5 }", ["a time step of -0.5", "positive and finite"]),
         ("{ stable = 0 }", ["a time step of 0", "positive and finite"]),
         ("{ seconds = nan }", ["a time step of NaN", "positive and finite"]),
@@ -398,5 +402,5 @@ fn an_unknown_command_is_refused_with_the_nearest() {
 #[test]
 fn a_mesh_that_no_memory_holds_is_refused() {
     let told = refused(&["solve", "cosine-layer", "--cells", "4000", "--integrator", "implicit"]);
-    assert_says(&told, &["4000 cells over the height", "GB of memory", "take fewer"]);
+    assert_says(&told, &["4000 cells over the height", "GB of memory", "use fewer"]);
 }

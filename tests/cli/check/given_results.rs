@@ -154,8 +154,8 @@ fn a_result_that_is_not_there_or_lacks_a_time_fails_its_case_and_says_what_to_do
     let other = self::folder(0.0);
     let mut from = "run-10".to_owned();
     for (cells, wanted) in [
-        (20, "10 cells over the height, and the case asks for 20"),
-        (5, "10 cells over the height, and the case asks for 5"),
+        (20, "10 cells over the height, but the case asks for 20"),
+        (5, "10 cells over the height, but the case asks for 5"),
     ] {
         let to = format!("run-{cells}");
         fs::rename(other.path().join(&from), other.path().join(&to)).expect("moved");

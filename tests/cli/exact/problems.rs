@@ -175,7 +175,7 @@ fn dimensionless_problems_and_mandels_grains_are_taken() {
     ]);
     assert_eq!(told.code, 0, "{}", told.err);
     assert!(told.err.contains("warning: no soil has a Young's modulus of 7.2 Pa"), "{}", told.err);
-    assert!(told.err.contains("in a problem without dimensions it is right"), "{}", told.err);
+    assert!(told.err.contains("in a dimensionless problem it is right"), "{}", told.err);
     // Undrained, the same everywhere: p = F/a · 3α/(2((3K_u + G)/M)).
     let set = [
         "material.biot_coefficient=0.6",

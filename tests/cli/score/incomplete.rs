@@ -125,7 +125,7 @@ fn what_is_cut_another_meshs_or_beyond_the_load_is_no_result() {
     }
     let [study, _] = both(at, &table(at, 10), 5);
     assert!(
-        study.code == 3 && study.err.contains("nodes of the result stand at 11 heights, and 5 cells have 6"),
+        study.code == 3 && study.err.contains("nodes of the result lie at 11 heights, but 5 cells have 6"),
         "{}",
         study.err
     );

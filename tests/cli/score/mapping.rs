@@ -130,7 +130,7 @@ fn times_come_from_a_list_or_from_a_pattern_of_names() {
     assert!(refused.code == 2 && refused.err.contains("it comes after run_20_of_20.vtu"), "{}", refused.err);
     let short = score(at, &list(&[0.05, 0.1]), &["run_*.vtu"]);
     assert!(
-        short.code == 2 && short.err.contains("it is file 3 of its run, and [time] list has 2"),
+        short.code == 2 && short.err.contains("it is file 3 of its run, but [time] list has 2"),
         "{}",
         short.err
     );

@@ -99,7 +99,7 @@ fn a_footing_prints_its_load_and_locks_with_full_integration() {
 #[test]
 fn impossible_footings_are_refused_at_their_place() {
     for (scene, more, part) in [
-        ("footing", &["--cells", "5"][..], "take an even number"),
+        ("footing", &["--cells", "5"][..], "use an even number"),
         ("footing", &["--cells", "4", "--set", "layer.plate_width=5"], "the layer ends under the footing"),
         ("footing", &["--cells", "4", "--set", "layer.load=5"], "its plate is prescribed"),
         ("footing", &["--cells", "4", "--set", "points.offset=0.1"], "has no [points]"),

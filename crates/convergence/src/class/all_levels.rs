@@ -123,7 +123,7 @@ fn runs_away(case: &EvaluableSeries) -> Option<Classification> {
     (grows(first, second) && grows(second, last) && first + second + last >= GONE).then(|| {
         let reason = format!("the orders {} rise faster and faster", orders(&case.pairs));
         let classification = Classification::new(Class::PreAsymptotic, reason)
-            .advise("add a finer level: a second term of the other sign takes over");
+            .advise("add a finer level: a second term of opposite sign takes over");
         Classification { order: Some(case.order), ..classification }
     })
 }
@@ -293,8 +293,7 @@ fn classified(case: &EvaluableSeries, candidate: &Candidate) -> Option<Classific
                 order(candidate.lowering(finest)),
                 short(case.finest().0)
             );
-            let advice =
-                "look for a singular point or a load that starts at once: a logarithm dies out slowly";
+            let advice = "look for a singular point or a sudden load: a logarithmic term fades slowly";
             let classification = Classification::new(Class::PreAsymptotic, reason).advise(advice);
             Some(Classification { order: Some(case.order), ..classification })
         }

@@ -66,9 +66,11 @@ pub fn classify(series: &ErrorSeries, context: &Context) -> Classification {
     if !levels.windows(2).all(|pair| pair[0].error == pair[1].error) {
         return classification;
     }
-    let reason =
-        format!("the errors are identical on all levels, as of one result; {}", classification.reason);
-    Classification { reason, ..classification }.advise("look whether each level has a result of its own mesh")
+    let reason = format!(
+        "the errors are identical on all levels, as if from a single result; {}",
+        classification.reason
+    );
+    Classification { reason, ..classification }.advise("check that each level has the result of its own mesh")
 }
 
 fn wrong_context(context: &Context) -> Option<Classification> {
@@ -95,10 +97,13 @@ fn locked(context: &Context) -> Option<Classification> {
     }
     let shares: Vec<String> =
         context.mobility.iter().map(|share| format!("{:.1} %", 100.0 * share)).collect();
-    let reason = format!("the body reaches {} of its displacement: volumetric locking", shares.join(", "));
-    Some(Classification::new(Class::Locked, reason).advise(
-        "take the divergence at the cell centres, for the skeleton too if the skeleton is incompressible",
-    ))
+    let reason =
+        format!("the body reaches only {} of its displacement: volumetric locking", shares.join(", "));
+    Some(
+        Classification::new(Class::Locked, reason).advise(
+            "evaluate the divergence at the cell centres, also for the skeleton if it is incompressible",
+        ),
+    )
 }
 
 fn exact(series: &ErrorSeries, context: &Context) -> Option<Classification> {
@@ -109,7 +114,7 @@ fn exact(series: &ErrorSeries, context: &Context) -> Option<Classification> {
     (!errors.is_empty() && errors.len() == series.levels().len()).then(|| {
         let largest = short(errors.iter().copied().fold(0.0, f64::max));
         Classification::new(Class::Exact, format!("every error is round-off: the largest is {largest}"))
-            .advise("check that the result is not compared with itself; a harder problem shows an order")
+            .advise("check that the result is not compared with itself; only a harder problem shows an order")
     })
 }
 
@@ -119,7 +124,7 @@ fn not_evaluable(series: &ErrorSeries) -> Option<Classification> {
     let reason = match undefined {
         Some(Undefined::Vanishing { size }) => {
             let reason = format!(
-                "the error at size {} vanishes while others do not: no discretisation does that",
+                "the error at size {} vanishes while the others do not: no discretisation does that",
                 short(size)
             );
             let advice = "check whether that level was compared with itself, or was not run";
@@ -138,7 +143,8 @@ fn not_evaluable(series: &ErrorSeries) -> Option<Classification> {
             let ratio = close[0].size / close[1].size;
             let [coarse, fine] = [close[0], close[1]].map(|level| short(level.size));
             format!(
-                "sizes {coarse} and {fine} are too close for an order: ratio {ratio:.3}, {LEAST_RATIO} is needed"
+                "sizes {coarse} and {fine} are too close for an order: their ratio is {ratio:.3}, but \
+                 {LEAST_RATIO} is needed"
             )
         }
     };
@@ -171,7 +177,7 @@ impl EvaluableSeries<'_> {
         let advice = classification
             .advice
             .clone()
-            .unwrap_or_else(|| format!("check whether the level of size {size} is a run of the same case"));
+            .unwrap_or_else(|| format!("check that the level of size {size} is a run of the same case"));
         Classification { reason, ..classification }.advise(advice)
     }
 
@@ -235,10 +241,9 @@ impl EvaluableSeries<'_> {
         if let Some(floor) = &mut classification.floor {
             floor.limiter = Some(LimiterKind::RoundOff);
         }
-        Some(
-            classification
-                .advise("look at the digits of the data and at the tolerance of the solver: they end here"),
-        )
+        Some(classification.advise(
+            "check the digits of the data and the tolerance of the solver: they limit the error here",
+        ))
     }
 
     /// Rises that no fall makes up for, and that go on: a small rise before levels that stand still is a floor.
@@ -255,7 +260,7 @@ impl EvaluableSeries<'_> {
                 "the error grows under refinement, from {first} at size {coarse} to {last} at {fine}"
             );
             Classification::new(Class::Divergent, reason)
-                .advise("check stability and the reference: the method does not converge to it")
+                .advise("check stability, and the reference: the method does not converge to it")
         })
     }
 

@@ -140,7 +140,8 @@ impl<'a> EvaluableSeries<'a> {
         let target = 0.1 * fit.coefficient * powf(self.finest().0, fit.order);
         let [size, floor] = [fit.cancels_at, fit.floor].map(short);
         let reason = format!(
-            "the error falls, cancels near size {size} and grows again to a plateau of {floor} of opposite sign, which"
+            "the error falls, cancels near size {size} and grows again to a plateau of {floor} with \
+             opposite sign, which"
         );
         self.over_floor(&reason, Some(fit.order), Some(target), (fit.floor, true))
     }
@@ -155,7 +156,8 @@ impl<'a> EvaluableSeries<'a> {
     pub fn approaching(&self, approach: &Approach) -> Classification {
         let target = 0.1 * (approach.at(self.finest().0) - approach.limit).abs();
         let reason = format!(
-            "{} at order {} towards a limit of {}, and the finest level lies where those before it say: a plateau that",
+            "{} at order {} towards a limit of {}, and the finest level lies where the previous ones \
+             predict: a plateau that",
             self.first_to_last(),
             order(approach.order),
             short(approach.limit)
@@ -167,7 +169,7 @@ impl<'a> EvaluableSeries<'a> {
     pub fn may_approach(&self, approach: &Approach) -> Classification {
         let next = 0.5 * self.finest().0;
         let reason = format!(
-            "{} as if towards a limit of {} at order {}: {} levels cannot tell a limit from growth",
+            "{} as if towards a limit of {} at order {}: {} levels cannot distinguish a limit from growth",
             self.first_to_last(),
             short(approach.limit),
             order(approach.order),
@@ -183,12 +185,13 @@ impl<'a> EvaluableSeries<'a> {
         let limiter = identify(height, &self.limiters);
         let suspect = limiter.map_or_else(String::new, |limiter| format!(" ({})", limiter.name));
         let reason = format!(
-            "{reason}; {} levels cannot tell a plateau of about {}{suspect} from an order that has not settled",
+            "{reason}; {} levels cannot distinguish a plateau of about {}{suspect} from an order that has \
+             not settled",
             self.points.len(),
             short(height)
         );
         Classification::new(Class::PreAsymptotic, reason).advise(if self.points.len() < FLOOR_LEVELS {
-            "add a finer level: a plateau shows on four"
+            "add a finer level: a plateau shows only on four"
         } else {
             "add a finer level: a plateau stops the error, a lower order does not"
         })

@@ -48,7 +48,7 @@ fn with_formal(case: &EvaluableSeries, window: &str, formal: f64, coarse: f64, f
         }
         if stays_below && drift.abs() <= SETTLED {
             let reason = format!("{window}: settled below the formal {wanted}");
-            return contaminated(reason, "a term of that order governs every level");
+            return contaminated(reason, "a term of that order dominates every level");
         }
     }
     let near = |value: f64| (value - formal).abs() <= tolerance;
@@ -61,10 +61,10 @@ fn with_formal(case: &EvaluableSeries, window: &str, formal: f64, coarse: f64, f
         if drift.abs() <= SETTLED && !dying {
             let reason = format!("{window}: steady and above the formal {wanted}");
             return Classification::new(Class::Superconvergent, reason).advise(
-                "check whether the problem is too easy, or the samples lie at superconvergent points",
+                "check whether the problem is too easy or the samples lie at superconvergent points",
             );
         }
-        let why = if drift > 0.0 { "still rising, as when two terms cancel" } else { "still falling" };
+        let why = if drift > 0.0 { "still rising, as if two terms cancelled" } else { "still falling" };
         return unsettled(format!("{window}: above the formal {wanted} and {why}"));
     }
     unsettled(format!("{window}: not settled at the formal {wanted}"))
@@ -123,8 +123,8 @@ fn governed(case: &EvaluableSeries, bend: &Bend, window: &str) -> Option<Classif
                 order(terms.low)
             ),
             &terms.crossover().map_or_else(
-                || "it governs every level".to_owned(),
-                |at| format!("the term of lower order governs below size {}", short(at)),
+                || "it dominates every level".to_owned(),
+                |at| format!("the term of lower order dominates below size {}", short(at)),
             ),
         )),
         Bend::Higher(_) => None,
@@ -138,5 +138,5 @@ fn contaminated(reason: String, note: &str) -> Classification {
 }
 
 fn unsettled(reason: String) -> Classification {
-    Classification::new(Class::PreAsymptotic, reason).advise("add a finer level and look again")
+    Classification::new(Class::PreAsymptotic, reason).advise("add a finer level and check again")
 }

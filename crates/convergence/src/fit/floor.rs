@@ -169,7 +169,7 @@ pub(crate) fn advice(
             format!("use a reference that is accurate to {accuracy}, or stop refining")
         }
         LimiterKind::Model => format!(
-            "compare the run with the reference of its own equations: {} makes the difference",
+            "compare the run with the reference for its own equations: {} makes the difference",
             limiter.name
         ),
         LimiterKind::RoundOff => "drop the finest levels: they show round-off".to_owned(),

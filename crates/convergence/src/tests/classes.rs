@@ -169,7 +169,7 @@ fn a_limit_other_than_zero_is_a_floor_from_either_side() {
             let classification = classify(&series, &Context { formal_order, ..context });
             assert_eq!(classification.class, Class::PreAsymptotic, "{classification:?}");
             assert!(
-                classification.reason.contains("3 levels cannot tell a limit from growth"),
+                classification.reason.contains("3 levels cannot distinguish a limit from growth"),
                 "{classification:?}"
             );
             assert!(classification.advice.expect("advice").contains("add a level: at size 0.0125"));
@@ -210,7 +210,7 @@ fn three_levels_cannot_show_a_floor_and_four_can() {
     };
     let three = floored(3);
     assert_eq!(three.class, Class::PreAsymptotic, "{three:?}");
-    assert!(three.reason.contains("3 levels cannot tell a plateau of about 1e-3"), "{three:?}");
+    assert!(three.reason.contains("3 levels cannot distinguish a plateau of about 1e-3"), "{three:?}");
     assert!(three.advice.expect("advice").contains("add a finer level"));
     assert_eq!(floored(4).class, Class::FloorLimited);
     // What three levels took for a floor of 8.9e-5, two more show to be none.

@@ -254,8 +254,8 @@ fn processes_are_told_that_live_on_or_were_left_behind_and_not_those_that_were_e
         (
             Ending::NotStarted(std::io::Error::other("no such file")),
             &[],
-            "not-startable: `./theirs` could not be started: no such file; the command in the study is wrong, or the \
-             program is not here. Its output ended: out"
+            "not-startable: `./theirs` could not be started: no such file; the command in the study is \
+             wrong, or the program is not installed. Its output ended: out"
                 .to_owned(),
         ),
         (

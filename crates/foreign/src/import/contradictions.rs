@@ -103,8 +103,8 @@ impl<'a> Course<'a> {
             match self.difference(&self.instants[at], &self.instants[at + 1], allowed) {
                 Difference::Explained { are_equal } => repeated.extend(are_equal.then_some(at + 1)),
                 Difference::Contradiction(values) => told.push(format!(
-                    "two states stand at one time, t = {} s and {} s, and contradict each other{values}: keep the run that \
-                     counts",
+                    "two states have the same time, t = {} s and {} s, and contradict each other{values}: \
+                     keep the right run",
                     typed(first),
                     typed(second),
                 )),
@@ -224,7 +224,7 @@ impl<'a> Course<'a> {
             })?;
             let time = typed(self.time(instant));
             Some(format!(
-                "at t = {time} s it holds two runs: {misfit}, and no profile joins them: keep the run that counts"
+                "at t = {time} s it holds two runs: {misfit}, and no single profile fits both: keep the right run"
             ))
         };
         passes.into_iter().enumerate().filter_map(of_time).collect()
@@ -300,8 +300,8 @@ impl<'a> Course<'a> {
                 .find(|(before, after, pair)| after.time < before.time && self.overlap(pair[0], pair[1]));
             told.extend(back.map(|(before, after, _)| {
                 format!(
-                    "its times go back: t = {} s ({}) comes after t = {} s ({}): keep one run where a restart or another run was \
-                     appended, or sort the states by time",
+                    "its times decrease: t = {} s ({}) comes after t = {} s ({}): keep one run if a restart \
+                     or another run was appended, or sort the states by time",
                     typed(after.time),
                     self.origins.place(after.origin),
                     typed(before.time),

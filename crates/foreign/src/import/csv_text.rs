@@ -261,8 +261,8 @@ fn dialect_of(sample: Option<&str>, header: Option<&str>, layout: &TableLayout) 
             && names.is_some_and(|names| names > 1 && 2 * names == count(&fallback)) =>
         {
             Err(format!(
-                "`{}` has twice as many fields as there are names: where a comma begins fractions, separate the columns by \
-                 another sign",
+                "`{}` has twice as many fields as there are names: if commas are decimal separators, use \
+                 another column separator",
                 excerpt(sample)
             ))
         }
@@ -277,7 +277,7 @@ fn dialect_of(sample: Option<&str>, header: Option<&str>, layout: &TableLayout) 
                 return Ok(first);
             }
             Err(format!(
-                "`{}` may have {} columns: say `delimiter` and `decimal` in [csv]",
+                "`{}` may have {} columns: set `delimiter` and `decimal` in [csv]",
                 excerpt(sample),
                 fit.iter().map(|dialect| count(dialect).to_string()).collect::<Vec<_>>().join(" or ")
             ))

@@ -114,7 +114,7 @@ impl Absent {
 /// How a user leaves the quantity of a column out, after "to leave it out, ".
 pub fn left_out(column: Column, quantity: Quantity) -> String {
     format!(
-        "call `score --without {}`, or write `{} = \"\"` to [columns] of a mapping",
+        "call `score --without {}`, or write `{} = \"\"` into [columns] of a mapping",
         quantity.name(),
         column.name()
     )
@@ -140,8 +140,7 @@ mod tests {
     #[test]
     fn what_one_state_has_all_must_have_whichever_lacks_it() {
         let when = |place: usize| format!("state {place}");
-        let how =
-            "to leave it out, call `score --without pressure`, or write `p = \"\"` to [columns] of a mapping";
+        let how = "to leave it out, call `score --without pressure`, or write `p = \"\"` into [columns] of a mapping";
         for (lacking, pressures, first) in [
             (vec![0], [0, 1, 1], "0"),
             (vec![1], [1, 0, 1], "1"),

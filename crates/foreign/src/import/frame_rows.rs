@@ -122,7 +122,7 @@ impl<'a> FrameRows<'a> {
         let has = |column: Column| self.elsewhere.contains(&column);
         let refused = |what: &str| {
             self.refused(format!(
-                "{what}, and the file has it only on {}: leave one of them out",
+                "{what}, but the file has it only on {}: leave one of them out",
                 self.on.name()
             ))
         };
@@ -182,7 +182,7 @@ impl<'a> FrameRows<'a> {
         }
         if rows.columns.iter().all(Option::is_none) && mapping.displacement.is_none() {
             return Err(rows.refused(format!(
-                "there is nothing to score: no array of the mapping is there; the file has {}; name one with --mapping{}",
+                "there is nothing to score: the file has no array of the mapping, but {}; name one with --mapping{}",
                 frame.names(),
                 rows.hint_of_program()
             )));
@@ -504,7 +504,7 @@ impl<'a> FrameRows<'a> {
         let are_corners = match &self.frame.cells {
             Some(cells) if rows.corners && self.on == Association::Points => cells.are_corners(self.count),
             None if rows.corners && self.on == Association::Points && !is_preset => {
-                return Err(self.refused("it has no cells: take `corners` out of [rows]".to_owned()));
+                return Err(self.refused("it has no cells: remove `corners` from [rows]".to_owned()));
             }
             // A preset asks for corners in case there are cells.
             _ => vec![true; self.count],

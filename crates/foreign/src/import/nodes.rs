@@ -85,20 +85,18 @@ pub fn counted_otherwise(cells: usize, places: &[f64], height: f64) -> Option<St
     if reach_both_ends(&levels, height) && count >= FEWEST {
         let own = count - 1;
         return if cells == count {
-            Some(format!(
-                "{count} nodes stand from the base to the surface: these are {own} cells, and not {cells}"
-            ))
+            Some(format!("{count} nodes lie between base and surface: this makes {own} cells, not {cells}"))
         } else if cells == own * own || cells == count * count {
             Some(format!(
-                "{count} nodes stand from the base to the surface, which are {own} cells over the height: is {cells} the number \
-                 of all of them?"
+                "{count} nodes lie between base and surface, which makes {own} cells over the height: is \
+                 {cells} the number of all cells?"
             ))
         } else {
             None
         };
     }
     (count >= FEWEST && cells == count * count).then(|| {
-        format!("samples stand at {count} heights: is {cells} the number of all cells, and not of those over the height?")
+        format!("samples lie at {count} heights: is {cells} the number of all cells, not of those over the height?")
     })
 }
 
@@ -144,9 +142,9 @@ mod tests {
         let centres: Vec<f64> = (0..5).map(|at| 0.4 + 0.8 * f64::from(at)).collect();
         for (cells, places, told) in [
             (10, nodes(10), None),
-            (11, nodes(10), Some("these are 10 cells, and not 11")),
-            (100, nodes(10), Some("is 100 the number of all of them?")),
-            (121, nodes(10), Some("which are 10 cells over the height")),
+            (11, nodes(10), Some("this makes 10 cells, not 11")),
+            (100, nodes(10), Some("is 100 the number of all cells?")),
+            (121, nodes(10), Some("which makes 10 cells over the height")),
             (5, nodes(10), None),
             (20, nodes(10), None),
             (5, centres.clone(), None),

@@ -210,7 +210,7 @@ fn runs_of_arrays(
                 _ => true,
             });
             if let Some(table) = steps.iter().find(|step| step.kind == Kind::Table) {
-                let reason = "it is a table among files with arrays: score them separately";
+                let reason = "it is a table among files with arrays: score it separately";
                 return Err(ImportError::content(&table.file, reason));
             }
             read_states(&steps, Wanted(&names), &mut |step, mut frame| {
@@ -531,8 +531,8 @@ impl Reading {
                 |collection| format!("{}, which lists it", collection.display()),
             );
             refused(format!(
-                "its time is unknown: score {listed}, give --set-time-step SECONDS if its name has the number of \
-                 a step, or write [time] into a mapping{}",
+                "its time is unknown: score {listed}, give --set-time-step SECONDS if its name has a step \
+                 number, or write [time] into a mapping{}",
                 columns.hint_of_program()
             ))
         })?;
@@ -635,8 +635,8 @@ impl Run {
         Err(ImportError::content(
             pair[1],
             format!(
-                "it comes after {}, and [time] counts the files in their order: give them in the order of their numbers, as a \
-                 pattern in quotes does, or write [time] files",
+                "it comes after {}, but [time] counts the files in their order: give them in the order of \
+                 their numbers, as a quoted pattern does, or write [time] files",
                 pair[0].display()
             ),
         ))
@@ -648,7 +648,7 @@ impl Run {
         let kept: usize = kept.map(|(_, state)| state.initial_height.len()).sum();
         if kept < rows {
             let note = format!(
-                "{} of {rows} rows repeat the place and the values of another and count once",
+                "{} of {rows} rows repeat the place and values of another and count once",
                 rows - kept
             );
             self.notes.push(note);
@@ -672,7 +672,7 @@ impl Run {
         }
         self.expected.settlement = matched > 0;
         self.notes.push(format!(
-            "settlement from {} at {matched} of {} times, the nearest within 0.1 % each",
+            "settlement from {} at {matched} of {} times, each the nearest within 0.1 %",
             if series.file.is_empty() { file.display().to_string() } else { series.file.clone() },
             self.states.len()
         ));
@@ -965,8 +965,9 @@ mod tests {
             let found = reading().time_of(&step, &frame, None, &columns, &mapping, BODY);
             match wanted {
                 None => {
-                    let nowhere = "its time is unknown: score the .pvd or .series that lists it, give --set-time-step \
-                                   SECONDS if its name has the number of a step, or write [time] into a mapping";
+                    let nowhere = "its time is unknown: score the .pvd or .series that lists it, give \
+                                   --set-time-step SECONDS if its name has a step number, or write [time] \
+                                   into a mapping";
                     let why = if of_step.is_some() { "its time is NaN" } else { nowhere };
                     assert_eq!(found.expect_err("no time").to_string(), format!("a_7.vtu: {why}"));
                 }

@@ -42,12 +42,12 @@ impl SaidUnit {
         }
         match size_of(unit, si) {
             Some(size) if (size / own - 1.0).abs() < 1e-12 => Self::AsMapped,
-            Some(size) => Self::Factor(
-                size / own,
-                format!("`{name}` is in {unit}, as the file states, and not in {word}"),
-            ),
+            Some(size) => {
+                Self::Factor(size / own, format!("`{name}` is in {unit}, as the file states, not in {word}"))
+            }
             None => Self::Unfit(format!(
-                "`{name}` is in `{unit}`, as the file states, which is no unit that `{}` is read in: it is taken as {word}",
+                "`{name}` is in `{unit}`, as the file states, but `{}` cannot be read in that unit: it is \
+                 taken as {word}",
                 mapping.shown(column).name()
             )),
         }

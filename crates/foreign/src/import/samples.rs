@@ -258,7 +258,7 @@ fn state_of(rows: &[&SampleRow], origins: &Origins) -> Result<SampledState, Impo
 
 fn incomplete(column: Column) -> ImportError {
     let reason = format!(
-        "some files have the column `{}` and others lack it: give it in all or in none",
+        "some files have the column `{}` and others do not: give it in all or in none",
         column.name()
     );
     ImportError::content(Path::new("the result"), reason)
@@ -384,7 +384,7 @@ mod tests {
         };
         let told = |column: &str| {
             format!(
-                "the result: some files have the column `{column}` and others lack it: give it in all or in none"
+                "the result: some files have the column `{column}` and others do not: give it in all or in none"
             )
         };
         assert_eq!(lacking(|_| ()), told("u_y"));

@@ -38,7 +38,7 @@ pub fn declared_time(
     if !time.list.is_empty() {
         let given = time.list.get(place);
         let given = given.ok_or_else(|| {
-            format!("it is file {} of its run, and [time] list has {} times", place + 1, time.list.len())
+            format!("it is file {} of its run, but [time] list has {} times", place + 1, time.list.len())
         })?;
         return Ok(Some(seconds(*given)));
     }
@@ -58,7 +58,7 @@ pub fn declared_time(
     };
     let number = number.ok_or_else(|| match &time.pattern {
         Some(pattern) => format!("its name does not match the pattern `{pattern}` of [time]"),
-        None => "its name has no number of a step".to_owned(),
+        None => "its name has no step number".to_owned(),
     })?;
     Ok(Some(step * number))
 }
@@ -234,8 +234,8 @@ mod tests {
     #[test]
     fn a_file_beyond_the_list_or_without_a_number_of_its_step_is_told() {
         for (time, name, place, told) in [
-            ("list = [2.0, 3.0]", "a_1.vtu", 2, "it is file 3 of its run, and [time] list has 2 times"),
-            ("step = 1.0", "column.vtu", 0, "its name has no number of a step"),
+            ("list = [2.0, 3.0]", "a_1.vtu", 2, "it is file 3 of its run, but [time] list has 2 times"),
+            ("step = 1.0", "column.vtu", 0, "its name has no step number"),
             (
                 "step = 1.0\npattern = \"b_{step}.vtu\"",
                 "a_1.vtu",

@@ -126,8 +126,9 @@ impl<'a> Table<'a> {
             let sign = if self.has_decimal_comma { "point" } else { "comma" };
             let whole = first.replace([',', '.'], "");
             told.doubts.push(format!(
-                "{}:{line}: the {sign} of `{first}` in the column `{column}` may stand between thousands or before a fraction, and it \
-                 is read as {whole}: write the numbers without it, or say `decimal` in [csv]",
+                "{}:{line}: the {sign} of `{first}` in the column `{column}` may be a thousands or a \
+                 decimal separator; it is read as {whole}: write the numbers without it, or set `decimal` \
+                 in [csv]",
                 self.path.display()
             ));
         }
@@ -202,7 +203,7 @@ impl<'a> Table<'a> {
             let column = excerpt(self.header.get(place).unwrap_or_default());
             let has_comma = !self.has_decimal_comma && number_of(typed, true).is_some_and(f64::is_finite);
             let hint = if has_comma {
-                "; where a comma begins fractions, write `decimal = \",\"` into [csv]"
+                "; if commas are decimal separators, write `decimal = \",\"` into [csv]"
             } else {
                 ""
             };
@@ -259,7 +260,7 @@ fn uneven(fields: u64, expected: u64) -> String {
     let why = if fields < expected {
         "a value is missing, or the line is cut"
     } else {
-        "there is a value too many; where a comma begins fractions, separate the columns by another sign"
+        "there is one value too many; if commas are decimal separators, use another column separator"
     };
     let fields = if fields == 1 { "1 field".to_owned() } else { format!("{fields} fields") };
     format!("the line has {fields}, and those above have {expected}: {why}")
@@ -306,7 +307,7 @@ impl Wide {
 impl Places {
     fn of(table: &Table, mapping: &Mapping) -> Result<Self, ImportError> {
         if mapping.rows.corners {
-            return Err(table.error("a table has no cells: take `corners` out of [rows]".to_owned()));
+            return Err(table.error("a table has no cells: remove `corners` from [rows]".to_owned()));
         }
         let find = |column: Column, name: &String| {
             // A row without a height is none, whoever declared its column.
@@ -383,7 +384,7 @@ pub fn take_rows(
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         return Err(table.error(format!(
             "its time is declared nowhere: add \"{name}\" = … to [time] files, name a column `t`, or give \
-             --set-time-step if the name has the number of a step"
+             --set-time-step if the name has a step number"
         )));
     }
     let mut told = TableNotes { is_ended: table.is_ended, ..TableNotes::default() };
@@ -564,10 +565,7 @@ fn points_of(rows: &[SampleRow], origins: &Origins) -> Result<PointsAndContradic
     let (states, mut contradictions) = states_of(rows, origins)?;
     let repeated = states.iter().filter_map(|state| {
         let values = state.repeated_at.as_ref()?;
-        Some(format!(
-            "at t = {} s it has two values, at {values}: keep the run that counts",
-            typed(state.time)
-        ))
+        Some(format!("at t = {} s it has two values, at {values}: keep the right run", typed(state.time)))
     });
     contradictions.splice(0..0, repeated);
     Ok((states.iter().map(|state| (state.time, state.displacement[0])).collect(), contradictions))
@@ -576,7 +574,7 @@ fn points_of(rows: &[SampleRow], origins: &Origins) -> Result<PointsAndContradic
 /// A sentence about a table whose last line does not end.
 pub fn not_ended(path: &Path) -> String {
     format!(
-        "{} does not end with a line break, so it may be cut inside its last number: end the last line with one",
+        "{} does not end with a line break, so it may be cut off inside its last number: end the last line with one",
         path.display()
     )
 }

@@ -201,7 +201,7 @@ fn a_settlement_curve_has_its_sign_and_unit_and_tells_what_it_lacks() {
         let matched = found.iter().flatten().count();
         assert_eq!(run.expected.settlement, matched > 0, "{more}");
         let note =
-            format!("settlement from curve.csv at {matched} of 2 times, the nearest within 0.1 % each");
+            format!("settlement from curve.csv at {matched} of 2 times, each the nearest within 0.1 %");
         assert_eq!((run.notes, run.unended), (vec![note], vec![]), "{more}");
     }
     assert_eq!(run(" }", "t,s\n60,0.25").expect("states").unended, [at("curve.csv")], "it may be cut");
@@ -225,7 +225,7 @@ fn a_column_that_is_missing_is_told_with_the_first_thirty_there_are() {
     assert!(told(&names.join(",")).ends_with(&time(format!("{}, and 2 more", listed(&names[..30])))));
     let told = told("t,y,u_y");
     let how =
-        "to leave it out, call `score --without pressure`, or write `p = \"\"` to [columns] of a mapping";
+        "to leave it out, call `score --without pressure`, or write `p = \"\"` into [columns] of a mapping";
     assert!(
         told.ends_with(&format!(
             "result.csv: there is no column `p` ({how}); the header has `t`, `y`, `u_y`"
@@ -233,8 +233,8 @@ fn a_column_that_is_missing_is_told_with_the_first_thirty_there_are() {
         "{told}"
     );
     let untimed = states("[columns]\ny = \"y\"\np = \"p\"\n", "y,p\n0.5,3\n").expect_err("no time");
-    let how = "add \"result.csv\" = … to [time] files, name a column `t`, or give --set-time-step if the name has the number of \
-               a step";
+    let how = "add \"result.csv\" = … to [time] files, name a column `t`, or give --set-time-step if the \
+               name has a step number";
     assert!(untimed.ends_with(&format!("result.csv: its time is declared nowhere: {how}")), "{untimed}");
     let named =
         states("[columns]\ny = \"y\"\np = \"p\"\nu_y = \"\"\n", "t,y,p\n2,0.5,3\n").expect("a column `t`");
@@ -255,14 +255,13 @@ fn a_column_that_is_missing_is_told_with_the_first_thirty_there_are() {
     assert_eq!(of("2.0").expect("a row")[0].pressure, [4.0]);
     assert!(of("3.0").is_err_and(|told| told.ends_with("result.csv: there are no rows")));
     let corners = states(&format!("{CONVENTION}[rows]\ncorners = true\n"), rows).expect_err("no cells");
-    assert!(corners.ends_with("result.csv: a table has no cells: take `corners` out of [rows]"), "{corners}");
+    assert!(corners.ends_with("result.csv: a table has no cells: remove `corners` from [rows]"), "{corners}");
 }
 
 #[test]
 fn a_ragged_line_and_a_column_that_is_there_twice_are_told_at_their_place() {
     let cut = "a value is missing, or the line is cut";
-    let long =
-        "there is a value too many; where a comma begins fractions, separate the columns by another sign";
+    let long = "there is one value too many; if commas are decimal separators, use another column separator";
     for (text, told) in [
         (
             "t,y,p,u_y\n1,0.5,3,0\n# note\n\n1,0.7,3\n",
@@ -303,8 +302,7 @@ fn a_table_ends_with_a_line_break_of_any_kind_or_has_nothing() {
         let read = crate::import::csv_text::CsvText::read(&path, &TableLayout::default()).expect("a table");
         assert_eq!(read.is_ended, is_ended, "{text:?}");
     }
-    let what =
-        "does not end with a line break, so it may be cut inside its last number: end the last line with one";
+    let what = "does not end with a line break, so it may be cut off inside its last number: end the last line with one";
     assert_eq!(super::not_ended(&path), format!("{} {what}", path.display()));
 }
 
@@ -339,7 +337,7 @@ fn patterns_stand_for_files_by_folder_and_number_and_a_name_with_a_star_for_itse
     let body = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 1.0 };
     let told =
         runs_of(&[vec![at("a/s.csv")], vec![at("a/x.vtk")]], &mapping, body).expect_err("both").to_string();
-    let why = "it is a table among files with arrays: score them separately";
+    let why = "it is a table among files with arrays: score it separately";
     assert_eq!(told, format!("{}: {why}", at("a/s.csv").display()));
 }
 
@@ -405,8 +403,9 @@ fn states_of_one_time_must_agree_and_times_must_not_go_back() {
         });
         "t,y,p,u_y\n".to_owned() + &rows.collect::<String>()
     };
-    let twice = "two states stand at one time, t = 2 s and 2.000000004 s, and contradict each other at y = 0.5 m: p is 15.75 Pa \
-                 (a.csv:6) and 12.6 Pa (a.csv:18): keep the run that counts";
+    let twice = "two states have the same time, t = 2 s and 2.000000004 s, and contradict each other at y = \
+                 0.5 m: p is 15.75 Pa \
+                 (a.csv:6) and 12.6 Pa (a.csv:18): keep the right run";
     for (blocks, states, told) in [
         (&[(1.0, 1.0), (2.0, 1.0), (3.0, 0.9)][..], 3, None),
         // Another run, at times of its own; the last digit of a time decides nothing.

@@ -354,7 +354,8 @@ impl Mapping {
     fn turned(mut self, source: &StudySource) -> Result<Self, StudyError> {
         let Some(along) = self.columns.x.take() else {
             return Err(source.complaint(
-                "the problem is a slab, whose fields vary along x, and no column `x` gives the place of a sample".to_owned(),
+                "the problem is a slab, whose fields vary along x, but no column `x` gives the place of a \
+                 sample".to_owned(),
                 "add `x = \"x\"` to [columns], from the middle of the slab to its drained side; in a file that calls this \
                  direction y the axes are exchanged: `x = \"y\"` and `u_x = \"u_y\"`"
                     .to_owned(),
@@ -362,8 +363,8 @@ impl Mapping {
         };
         if self.rows.x.is_some() {
             return Err(source.complaint(
-                "the fields of a slab vary along `x`, and [rows] keeps one place of it".to_owned(),
-                "take `x` out of [rows]".to_owned(),
+                "the fields of a slab vary along `x`, but [rows] keeps only one place of it".to_owned(),
+                "remove `x` from [rows]".to_owned(),
             ));
         }
         self.columns.x = Some(std::mem::replace(&mut self.columns.y, along)).filter(|name| !name.is_empty());
@@ -405,7 +406,7 @@ impl Mapping {
             return Ok(());
         }
         Err(source.complaint(
-            "the problem is a layer, and no column `x` gives the place of a sample along it".to_owned(),
+            "the problem is a layer, but no column `x` gives the place of a sample along it".to_owned(),
             "add `x = \"x\"` to [columns] and `x = \"right\"` to [sign], for a distance from the crest of the load"
                 .to_owned(),
         ))
@@ -505,13 +506,13 @@ impl Mapping {
             |column: Column| columns.of_quantity(column).is_some_and(|name| name.single().is_some());
         faults.refuse(
             is_wide && Column::ALL.into_iter().any(is_narrow),
-            "some quantities have one column per height, and another one has a single column",
+            "some quantities have one column per height, but another has a single column",
             "give its height too, like u_y = { \"top\" = 1.0 }",
         );
         faults.refuse(
             is_wide && columns.x.is_some(),
-            "columns with their heights have no place along a layer",
-            "take `x` out of [columns], or write one row per place",
+            "columns with heights have no place along a layer",
+            "remove `x` from [columns], or write one row per place",
         );
         let is_current = self.position.y == StatedPlace::Current && self.displacement.is_none();
         for (place, given, component, has_component) in [
@@ -550,7 +551,7 @@ impl Mapping {
         );
         faults.refuse(
             self.csv.decimal == Some(',') && self.csv.delimiter == Some(','),
-            "a comma cannot both separate columns and begin a fraction",
+            "a comma cannot be both the column and the decimal separator",
             "declare another `delimiter`",
         );
     }
@@ -570,7 +571,7 @@ impl Mapping {
         faults.refuse(
             self.time.case
                 && !(self.time.list.is_empty() && self.time.files.is_empty() && self.time.step.is_none()),
-            "the files are at the times of the case, and [time] gives others",
+            "the files are at the times of the case, but [time] gives others",
             "leave one of them",
         );
         faults.refuse(
