@@ -414,8 +414,8 @@ mod tests {
             (&COSINE_LAYER, "GIMP", little, usual, locks),
             (&FOOTING, "GIMP-SRI", more, 0.499, Ok(20.0)),
             (&FOOTING, "GIMP", little, usual, locks),
-            (&AT_REST, "GIMP", more, usual, Err("the pressures are those of the weight")),
-            (&MANUFACTURED_BOX, "GIMP-SRI", more, usual, Err("body forces make the pressure")),
+            (&AT_REST, "GIMP", more, usual, Err("the pressures are those of self-weight")),
+            (&MANUFACTURED_BOX, "GIMP-SRI", more, usual, Err("body forces cause the pressure")),
         ] {
             record.case.scene = scene;
             record.case.method = Method::named(method).expect("a method").into();

@@ -34,8 +34,8 @@ xie-leo ¦ output.references = ['xie-leo']⏎column.loading_time = 5.0 ¦ cells 
 at-rest ¦ column.strain = 0.1 ¦ cells = [4] ¦  ¦ no load acts in the problem `at-rest`, so it has no strain ¦ leave `strain` out
 terzaghi ¦ column.strain = 0.1 ¦ cells = [4]⏎load = [1.0, 2.0] ¦  ¦ the column has a `load` and a `strain` ¦ leave one of them out: each determines the other
 mandel ¦ column.dimensions = 1 ¦ cells = [10] ¦  ¦ `mandel` has two dimensions ¦ leave the key out: the plate presses perpendicular to the flow of the water
-layered ¦ column = { height = 2.5, soils = [{ thickness = 3.0 }, { thickness = 1.5 }] } ¦ cells = [4] ¦  ¦ the layers are 4.5 m thick together, and the column is 2.5 m high: they must fill it ¦ make the column 4.5 m high, or the layers thinner
-layered ¦ column = { height = 2.5, soils = [{ thickness = 1.0 }, { thickness = 0.5 }] } ¦ cells = [4] ¦  ¦ the layers are 1.5 m thick together, and the column is 2.5 m high: they must fill it ¦ make the last layer 1.5 m thick, or the column 1.5 m high
+layered ¦ column = { height = 2.5, soils = [{ thickness = 3.0 }, { thickness = 1.5 }] } ¦ cells = [4] ¦  ¦ the layers are 4.5 m thick together, but the column is 2.5 m high: they must fill it ¦ make the column 4.5 m high, or the layers thinner
+layered ¦ column = { height = 2.5, soils = [{ thickness = 1.0 }, { thickness = 0.5 }] } ¦ cells = [4] ¦  ¦ the layers are 1.5 m thick together, but the column is 2.5 m high: they must fill it ¦ make the last layer 1.5 m thick, or the column 1.5 m high
 layered ¦ column.soils = [NINE] ¦ cells = [4] ¦  ¦ 9 layers of soil ¦ at most 8 are allowed
 terzaghi ¦ solver = [{ name = 'a', command = ['b'], result = '{out}/c', solve_seconds = 'LONG' }] ¦ cells = [4] ¦  ¦ the pattern has more than 500 letters ¦ write a short one, like "It took ([0-9.e+-]+) s"
 cosine-layer ¦  ¦ cells = [4, 8, 16] ¦ reference = 'none'⏎probe = 0.5⏎uncertainty = { below = 0.1 } ¦ a probe is for a field of a column that is compared with no reference ¦ add `reference = "none"`, or leave the key out
@@ -104,7 +104,7 @@ fn a_method_is_what_its_choices_say_or_refused_with_the_choice_that_is_wrong() {
         ),
         (
             format!("{gimp}, pressure = 'points', quadrature = 'moments'"),
-            "moments are fitted over cells, and the domains or splines of this basis reach beyond them",
+            "moments are fitted over cells, but the domains or splines of this basis reach beyond them",
             "use the basis \"hat\", or leave `quadrature` out",
         ),
         (

@@ -37,7 +37,7 @@ pub enum ExactError {
     UnknownReference(String),
     /// A load under which large-strain consolidation would end with a negative porosity.
     #[error(
-        "the load would press out more water than the pores hold: m_v q = {load} must stay below \
+        "the load would expel more water than the pores hold: m_v q = {load} must stay below \
          -ln(1 - n) = {limit} for a porosity of {porosity}"
     )]
     LoadClosesPores {
@@ -50,8 +50,8 @@ pub enum ExactError {
     },
     /// A load that grows, where the solution's acts at once.
     #[error(
-        "Xie & Leo's load acts at once, and this one takes {loading_time} s: the reference `large-strain` has a \
-         load that grows"
+        "Xie & Leo's load is sudden, but this one grows over {loading_time} s: use the reference \
+         `large-strain`, whose load may grow"
     )]
     LoadGrows {
         /// Time over which the load grows, s.
@@ -59,7 +59,7 @@ pub enum ExactError {
     },
     /// A load under which another soil law would end with a negative porosity.
     #[error(
-        "the load would press out more water than the pores hold: the volume would shrink by \
+        "the load would expel more water than the pores hold: the volume would shrink by \
          {shrinkage}, which must stay below the porosity {porosity}"
     )]
     PoresClose {
@@ -70,8 +70,8 @@ pub enum ExactError {
     },
     /// A law whose stresses are not known along a motion.
     #[error(
-        "the stresses of the law `{law}` are not known in closed form along the motion `{motion}`: `neo-hookean` is \
-         for every motion, `log-linear` for `manufactured-box`, where nothing shears"
+        "the stresses of the law `{law}` are not known in closed form along the motion `{motion}`: \
+         `neo-hookean` works for every motion, `log-linear` for `manufactured-box`, where there is no shear"
     )]
     LawOfMotion {
         /// Name of the law.
@@ -80,15 +80,15 @@ pub enum ExactError {
         motion: &'static str,
     },
     /// A law that has no closed form in a column.
-    #[error("the law `{law}` has no closed form in a column: it belongs to the manufactured scenes")]
+    #[error("the law `{law}` has no closed form in a column: it belongs to the manufactured solutions")]
     LawOfColumn {
         /// Name of the law.
         law: &'static str,
     },
     /// A motion that takes more volume than the pores have.
     #[error(
-        "the motion would close the pores: it leaves J = {least} of the volume somewhere, which must stay above the \
-         share {grains} of the grains; take smaller amplitudes or a larger porosity"
+        "the motion would close the pores: the volume ratio J falls to {least} somewhere, but must stay \
+         above the volume fraction {grains} of the grains; use smaller amplitudes or a larger porosity"
     )]
     MotionClosesPores {
         /// Least volume ratio.
@@ -119,12 +119,10 @@ pub enum ExactError {
         ratio: f64,
     },
     /// Fields of a problem in which only the load is unique.
-    #[error(
-        "only the load of a footing at collapse is unique: its fields are not, and have no exact solution"
-    )]
+    #[error("only the collapse load of a footing is unique: its fields are not, and have no exact solution")]
     NoFields,
     /// Layers that do not fill the column.
-    #[error("the layers are {sum} m thick together, and the column is {height} m high: they must fill it")]
+    #[error("the layers are {sum} m thick together, but the column is {height} m high: they must fill it")]
     LayersDoNotFill {
         /// Sum of the thicknesses, m.
         sum: f64,
@@ -141,8 +139,8 @@ pub enum ExactError {
     Drainage(&'static str),
     /// Reloading softer than first loading.
     #[error(
-        "the modulus of reloading, {reload} Pa, is below that of first loading, {virgin} Pa: a soil that remembers is \
-         stiffer below its preconsolidation"
+        "the unloading–reloading modulus, {reload} Pa, is below the modulus of first loading, {virgin} Pa: \
+         a soil is stiffer below its preconsolidation stress"
     )]
     ReloadModulus {
         /// `E₂`, Pa.
@@ -152,8 +150,8 @@ pub enum ExactError {
     },
     /// A load that never makes the soil yield, or makes it yield at once.
     #[error(
-        "no yield front runs through the column: the preconsolidation {preconsolidation} Pa must lie between the \
-         effective stress of the undrained start, {start} Pa, and that of the end, {end} Pa"
+        "no yield front advances through the column: the preconsolidation {preconsolidation} Pa must lie \
+         between the initial undrained effective stress, {start} Pa, and the final one, {end} Pa"
     )]
     NoYieldFront {
         /// `σ'_pc`, Pa.
@@ -165,8 +163,8 @@ pub enum ExactError {
     },
     /// A Biot coefficient that no porous body has.
     #[error(
-        "the Biot coefficient must lie between the porosity {porosity} and 1, got {alpha}: grains are stiffer than the \
-         skeleton that they make"
+        "the Biot coefficient must lie between the porosity {porosity} and 1, got {alpha}: grains are \
+         stiffer than the skeleton that they form"
     )]
     BiotCoefficient {
         /// `α`.
@@ -176,8 +174,8 @@ pub enum ExactError {
     },
     /// Grains softer than the skeleton that they make.
     #[error(
-        "the bulk modulus of the grains, {grains} Pa, is below that of the drained skeleton, {bulk} Pa: grains are stiffer \
-         than the skeleton that they make"
+        "the bulk modulus of the grains, {grains} Pa, is below that of the drained skeleton, {bulk} Pa: \
+         grains are stiffer than the skeleton that they form"
     )]
     SoftGrains {
         /// `K_s`, Pa.
@@ -197,8 +195,8 @@ pub enum ExactError {
     },
     /// A time at which the base is felt, of a solution that is that of a half-space.
     #[error(
-        "the solution is that of a half-space, and at T_v = {time_factor} the base may change the pressures by {bound:.1e} \
-         of the load: ask for earlier time factors"
+        "the solution is for a half-space, but at T_v = {time_factor} the base may change the pressures by \
+         {bound:.1e} of the load: ask for earlier time factors"
     )]
     BaseFelt {
         /// Time factor.
@@ -208,8 +206,8 @@ pub enum ExactError {
     },
     /// A time at which a series is not known well enough to be worth anything.
     #[error(
-        "at T_v = {time_factor} the solution may be off by {bound:.1e} of the load: it is no solution there; ask for another \
-         time factor"
+        "at T_v = {time_factor} the solution may be off by {bound:.1e} of the load, which is useless: ask \
+         for another time factor"
     )]
     Inaccurate {
         /// Time factor.
@@ -218,7 +216,7 @@ pub enum ExactError {
         bound: f64,
     },
     /// The place of a source.
-    #[error("the pressure at the source itself is infinite: ask for places beside it, ζ below 1")]
+    #[error("the pressure at the source itself is infinite: ask for places away from it, ζ below 1")]
     AtTheSource,
     /// A numerical reference that does not settle under refinement.
     #[error(

@@ -178,7 +178,7 @@ impl ColumnParameters {
         positive("gravity", soil.gravity)?;
         // Positive factors may still overflow or underflow together.
         positive("oedometric modulus", soil.oedometric_modulus())?;
-        positive("coupling modulus", soil.coupling_modulus())?;
+        positive("Biot modulus", soil.coupling_modulus())?;
         positive("coefficient of consolidation", soil.coefficient_of_consolidation())?;
         normal("time at a time factor of 1", self.time(1.0))?;
         // Numbers with few digits left make fields with few.

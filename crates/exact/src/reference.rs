@@ -206,8 +206,8 @@ fn drained<S: Solution + 'static>(
         Drainage::Both if parameters.soils.is_empty() => Arc::new(Mirrored::new(parameters, solve)?),
         Drainage::Both => {
             return Err(ExactError::Layers(
-                "that is drained at both ends is not symmetric, and has a solution at small strain alone: take the scene \
-                 `layered`",
+                "that is drained at both ends is not symmetric, and has a solution only at small strain: \
+                 use the problem `layered`",
             ));
         }
     })

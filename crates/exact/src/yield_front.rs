@@ -319,7 +319,7 @@ mod tests {
     #[test]
     fn columns_without_a_front_are_refused_in_sentences() {
         let refused = |values| YieldFront::new(&column(values)).unwrap_err().to_string();
-        assert!(refused([2e6, 1e6, 1e-8, 0.4, 3e4, 8e4]).contains("below that of first loading"));
+        assert!(refused([2e6, 1e6, 1e-8, 0.4, 3e4, 8e4]).contains("below the modulus of first loading"));
         // Never reached, and reached by the undrained start.
         assert!(refused([2e6, 4e6, 1e-8, 0.4, 3e4, 1.4e5]).contains("yield"));
         assert!(refused([2e6, 4e6, 1e-8, 0.4, 3e4, 3.0e4]).contains("yield"));

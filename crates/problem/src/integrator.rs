@@ -81,11 +81,12 @@ impl IntegratorKind {
     pub fn refuses_formulation(self, formulation: Formulation) -> Option<&'static str> {
         match (self, formulation) {
             (Self::Explicit | Self::SemiImplicit, Formulation::QuasiStatic) => {
-                Some("an explicit skeleton goes by its accelerations: they cannot be left out")
+                Some("an explicit skeleton needs its accelerations: they cannot be neglected")
             }
             (Self::Explicit, Formulation::UP) => Some(
-                "in `u-p` the water has no inertia of its own, its pressure diffuses, and explicit steps would \
-                     shrink with the square of the cell: take `v-w`, or `u-p` with `semi-implicit` or `implicit`",
+                "in `u-p` the water has no separate inertia, its pressure diffuses, and explicit steps \
+                 would shrink with the square of the cell size: use `v-w`, or `u-p` with `semi-implicit` or \
+                 `implicit`",
             ),
             _ => None,
         }
@@ -98,7 +99,7 @@ impl IntegratorKind {
                 Some("the explicit integrator cannot let its steps grow: its critical step bounds them")
             }
             (Self::Explicit | Self::SemiImplicit, TimeStep::Tolerance(_)) => {
-                Some("only the implicit integrator estimates its own error in time")
+                Some("only the implicit integrator estimates its error in time")
             }
             _ => None,
         }

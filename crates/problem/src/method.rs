@@ -137,12 +137,12 @@ impl Recovery {
     pub fn refuses(self, pressure: PressureIntegration, strain: StrainGradient) -> Option<&'static str> {
         if self.is_projected() && pressure.is_by_cells() {
             return Some(
-                "the projection is of a pressure at the nodes, whose divergence is taken at the points",
+                "the projection is for a pressure at the nodes, whose divergence is evaluated at the points",
             );
         }
         if self.is_projected() && strain.is_bbar() {
             return Some(
-                "B-bar takes the volumetric rate of a point or cell, and a projection has it at the nodes",
+                "B-bar uses the volumetric rate of a point or cell, but a projection has it at the nodes",
             );
         }
         match (self, pressure.is_by_cells()) {
@@ -190,7 +190,7 @@ impl Quadrature {
     /// Why it does not go with a basis, where it does not.
     pub fn refuses(self, basis: Basis) -> Option<&'static str> {
         (self == Self::Moments && basis != Basis::Hat).then_some(
-            "moments are fitted over cells, and the domains or splines of this basis reach beyond them",
+            "moments are fitted over cells, but the domains or splines of this basis reach beyond them",
         )
     }
 }

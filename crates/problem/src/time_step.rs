@@ -50,7 +50,7 @@ pub static STEP_KINDS: [StepKind; 5] = [
         word: "tolerance",
         make: TimeStep::Tolerance,
         least: 1e-12,
-        why: "round-off is an error of that size",
+        why: "round-off errors are of that size",
     },
 ];
 const NO_ERROR_LEFT: &str = "smaller steps no longer reduce the error in time";

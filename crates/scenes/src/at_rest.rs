@@ -12,6 +12,6 @@ pub static AT_REST: Scene = Scene {
     column: || Column { self_weight: true, ..Column::default() },
     takes: &["points", "self_weight"],
     references: &[SceneReference::own(ReferenceKind::AtRest)],
-    unjudged: &[(Check::Pressure, "the pressures are those of the weight")],
+    unjudged: &[(Check::Pressure, "the pressures are those of self-weight")],
     ..Scene::COLUMN
 };

@@ -7,7 +7,7 @@ use oedometer_exact::reference::ReferenceKind;
 /// The scene `cosine-layer`.
 pub static COSINE_LAYER: Scene = Scene {
     name: "cosine-layer",
-    summary: "plane layer under a cosine load, drained at its top: where locking shows",
+    summary: "plane layer under a cosine load, drained at its top: reveals locking",
     axes: "y is measured upward from the base, impermeable, fixed along y and if rough along x, to the drained \
            surface; x from the crest of the load, load · cos(π x/width), to its trough; at both ends there is \
            neither flow nor motion along x",

@@ -6,7 +6,7 @@ use oedometer_exact::reference::ReferenceKind;
 /// The scene `dynamic-column`.
 pub static DYNAMIC_COLUMN: Scene = Scene {
     name: "dynamic-column",
-    summary: "column at rest under a sudden or growing load: waves and consolidation",
+    summary: "column under a sudden or growing load, with inertia: waves and consolidation",
     question: Question::Waves,
     waves: true,
     load: LoadKind::Uniform,

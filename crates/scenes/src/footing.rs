@@ -27,7 +27,7 @@ pub static FOOTING: Scene = Scene {
     takes: &["plate_width", "plate", "undrained", "undrained_strength"],
     integrators: Allowed {
         list: &[IntegratorKind::Implicit],
-        why: "the plate is pushed so slowly that nothing has inertia: the integrator is `implicit`",
+        why: "the plate is pushed so slowly that there is no inertia: the integrator is `implicit`",
         instead: "leave the key out",
     },
     formulations: Allowed {
@@ -38,7 +38,8 @@ pub static FOOTING: Scene = Scene {
     methods: &[
         MethodLimit {
             refuses: |method| method.has_projection(),
-            why: "a pressure projection has unknown pressures at the nodes, and the footing's follow from displacements",
+            why: "a pressure projection has unknown pressures at the nodes, but the footing's follow from \
+                  displacements",
         },
         PLATE_HOLDS_NODES,
     ],
@@ -47,21 +48,23 @@ pub static FOOTING: Scene = Scene {
             key: "cells",
             refuses: |it| it.cells % 2 == 1,
             why: "an odd number of cells under a footing: half of it is solved, and its middle lies on a node",
-            instead: "take an even number",
+            instead: "use an even number",
         },
         Limit {
             key: "plate_width",
             refuses: |it| it.column.footing.width >= 2.0 * it.column.extent(),
-            why: "the layer ends under the footing: half of the footing lies on it",
+            why: "the layer ends under the footing: half of the footing must lie on it",
             instead: "make `length` more than half of `plate_width`: 2.5 times `plate_width` is enough",
         },
         Limit {
             key: "method",
             refuses: |it| {
-                it.column.footing.undrained == Undrained::TotalStress && it.method.strain.with_bbar().is_none()
+                it.column.footing.undrained == Undrained::TotalStress
+                    && it.method.strain.with_bbar().is_none()
             },
-            why: "the composite gradient between domain ends has no volume of its own: total stress needs one",
-            instead: "take another method, or `undrained = \"two-phase\"`",
+            why: "the composite gradient between domain ends has no separate volumetric part, which total \
+                  stress needs",
+            instead: "use another method, or `undrained = \"two-phase\"`",
         },
     ],
     clock: Clock::Push,

@@ -58,6 +58,6 @@ pub(crate) const PLATE_HOLDS_NODES: MethodLimit = MethodLimit {
         let configuration = method.configuration_in(Configuration::Frozen);
         method.basis.is_spline() || configuration != Configuration::Frozen
     },
-    why: "a rigid plate holds the nodes of a face: it takes weights that stay (`frozen`), of hats or domains and not of \
-          splines, whose coefficients are no values there",
+    why: "a rigid plate holds the nodes of a face: it needs shape functions that stay on the initial \
+          configuration (`frozen`), linear or with domains; coefficients of splines are not nodal values",
 };

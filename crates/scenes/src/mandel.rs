@@ -14,7 +14,7 @@ use oedometer_soil::material::Material;
 /// The scene `mandel`.
 pub static MANDEL: Scene = Scene {
     name: "mandel",
-    summary: "slab between rigid plates, drained at its sides: the pressure in its middle rises before it falls",
+    summary: "slab between rigid plates, drained at its sides: the pressure at mid-slab rises before it falls",
     axes: "x is measured from the middle of the slab, without flow or motion along x, to its drained, free \
            side, at `height`; y from the middle between the plates to the plate, at `width`, which is rigid, \
            smooth and impermeable and applies the mean stress `load`; cells are counted along x; the settlement is the plate's",

@@ -37,16 +37,16 @@ pub(crate) const OF_ALL: Scene = Scene {
     },
     integrators: Allowed {
         list: &[IntegratorKind::Explicit, IntegratorKind::Implicit],
-        why: "body forces and source of a manufactured motion act at the stages of explicit and implicit steps: a \
-              semi-implicit one takes stress and pressure at times of their own",
-        instead: "take `integrator = [\"explicit\"]`, or leave the key out",
+        why: "body forces and source of a manufactured solution act at the stages of explicit and implicit \
+              steps, but a semi-implicit step uses stress and pressure at different times",
+        instead: "use `integrator = [\"explicit\"]`, or leave the key out",
     },
     clock: Clock::Motion,
     outputs: |_, _| vec![0.1, 0.2, 0.3, 0.4],
     unjudged: &[
         (Check::Unbalanced, "the body forces that make the motion start suddenly"),
-        (Check::Equilibrium, "a motion made by body forces does not balance a load"),
-        (Check::Pressure, "body forces make the pressure"),
+        (Check::Equilibrium, "a motion caused by body forces does not balance a load"),
+        (Check::Pressure, "body forces cause the pressure"),
     ],
     ..Scene::COLUMN
 };

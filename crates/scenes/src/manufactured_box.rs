@@ -11,7 +11,7 @@ const MODEL: ManufacturedModel = ManufacturedModel::with_default_law(Motion::Box
 /// The scene `manufactured-box`.
 pub static MANUFACTURED_BOX: Scene = Scene {
     name: "manufactured-box",
-    summary: "square stretched along its axes by body forces and back: exact fields at large strain in the plane",
+    summary: "square stretched along its axes by body forces, and back: exact fields at large strain in the plane",
     motion: Some(MODEL),
     column: || square([0.25, 0.25, 0.0]),
     soil: || Material { law: MODEL.law, ..soil() },

@@ -11,7 +11,7 @@ const MODEL: ManufacturedModel = ManufacturedModel::with_default_law(Motion::She
 /// The scene `manufactured-shear`.
 pub static MANUFACTURED_SHEAR: Scene = Scene {
     name: "manufactured-shear",
-    summary: "the same with shear inside, in a neo-Hookean soil",
+    summary: "the same with internal shear, in a neo-Hookean soil",
     motion: Some(MODEL),
     column: || square([0.25, -0.2, 0.0]),
     soil: || Material { law: MODEL.law, ..soil() },

@@ -11,7 +11,7 @@ const MODEL: ManufacturedModel = ManufacturedModel::with_default_law(Motion::Vor
 /// The scene `manufactured-vortex`.
 pub static MANUFACTURED_VORTEX: Scene = Scene {
     name: "manufactured-vortex",
-    summary: "a disc that rotates inside a square and back: separates rotating from non-rotating particle domains",
+    summary: "a disc that rotates inside a square, and back: separates rotating from non-rotating particle domains",
     motion: Some(MODEL),
     column: || square([0.0, 0.0, 1.5]),
     soil: || Material { law: MODEL.law, ..soil() },

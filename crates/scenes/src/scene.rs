@@ -318,8 +318,8 @@ impl Scene {
     /// The formulations of a scene that is about waves.
     pub(crate) const WITH_INERTIA: Allowed<Formulation> = Allowed {
         list: &[Formulation::VW, Formulation::UP],
-        why: "the quasi-static formulation leaves out the waves that this scene is about",
-        instead: "take \"v-w\" or \"u-p\", or the scene \"terzaghi\"",
+        why: "the quasi-static formulation neglects the waves that this problem is about",
+        instead: "use \"v-w\" or \"u-p\", or the problem \"terzaghi\"",
     };
 
     /// References that hold, its own first.
@@ -377,7 +377,7 @@ impl Scene {
     /// Why the scene cannot take a configuration, where it cannot.
     pub fn refuses_configuration(&self, configuration: Configuration) -> Option<&'static str> {
         (self.is_large_strain() && configuration == Configuration::Frozen)
-            .then_some("nothing moves in a `frozen` configuration, and this scene is about large strain")
+            .then_some("nothing moves in a `frozen` configuration, but this problem is about large strain")
     }
 
     /// Why the scene cannot take a method, where it cannot.
@@ -389,7 +389,7 @@ impl Scene {
     pub fn refuses_law(&self, law: Law) -> Option<String> {
         if let Some(model) = self.motion {
             return (!ManufacturedModel { law, ..model }.has_law()).then(|| {
-                "the stresses of this law are not known in closed form along the motion of this scene"
+                "the stresses of this law are not known in closed form along the motion of this problem"
                     .to_owned()
             });
         }
@@ -401,14 +401,15 @@ impl Scene {
         match (self.laws, broken) {
             (_, Some(told)) => Some(told),
             (Laws::OfColumns, _) if !law.is_for_columns() => Some(
-                "this law has no closed form in a column: it belongs to the manufactured scenes".to_owned(),
+                "this law has no closed form in a column: it belongs to the manufactured solutions"
+                    .to_owned(),
             ),
             (Laws::OfColumns, _) if law == Law::Linear => Some(
-                "the law `linear` is of small strain: its conductivity ignores that the pores close"
+                "the law `linear` is for small strain: its conductivity ignores that the pores close"
                     .to_owned(),
             ),
             (Laws::Linear, _) if law != Law::Linear => Some(
-                "this scene is of small strain, where every law is linear: the one named would be ignored"
+                "this problem is at small strain, where every law is linear: the one named would be ignored"
                     .to_owned(),
             ),
             _ => None,
@@ -449,7 +450,7 @@ impl Scene {
 
 /// Says that a law belongs to one scene.
 fn only_of(scene: &Scene, law: Law) -> String {
-    format!("the law of the scene `{}` is `{}`, and of no other scene", scene.name, law.name())
+    format!("the law of the problem `{}` is `{}`, which belongs to no other problem", scene.name, law.name())
 }
 
 impl fmt::Debug for Scene {

@@ -18,8 +18,8 @@ pub static SEALED_ELEMENT: Scene = Scene {
     limits: &[Limit {
         key: "drag",
         refuses: |it| it.integrator == IntegratorKind::Explicit && it.settings.drag == Drag::Explicit,
-        why: "explicit drag in a nearly impermeable soil needs steps below 1e-12 of those of the waves",
-        instead: "take `drag = \"implicit\"`",
+        why: "explicit drag in a nearly impermeable soil needs steps below 1e-12 of the wave limit",
+        instead: "use `drag = \"implicit\"`",
     }],
     ..Scene::LOADED
 };

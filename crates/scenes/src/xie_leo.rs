@@ -27,7 +27,10 @@ pub static XIE_LEO: Scene = Scene {
     references: &[
         SceneReference::own(LARGE_STRAIN),
         // Xie & Leo's load acts at once.
-        SceneReference { holds_growing: false, ..SceneReference::beside(ReferenceKind::XieLeo, |soil| Some(neglected(soil))) },
+        SceneReference {
+            holds_growing: false,
+            ..SceneReference::beside(ReferenceKind::XieLeo, |soil| Some(neglected(soil)))
+        },
     ],
     start: StartOf::OverDepth(|column, soil| Ok(undrained(column, soil))),
     final_settlement: Some(|column, soil| {
@@ -41,10 +44,10 @@ pub static XIE_LEO: Scene = Scene {
 fn neglected(soil: &Material) -> &'static str {
     match (soil.continuity, soil.law == Law::PorosityDependent) {
         (Continuity::Conservative, false) => "the water's storage",
-        (Continuity::Conservative, true) => "the modulus in the rate form",
-        (Continuity::ConstantPorosityGradient, false) => "the dropped porosity gradient",
+        (Continuity::Conservative, true) => "the modulus in rate form",
+        (Continuity::ConstantPorosityGradient, false) => "the neglected porosity gradient",
         (Continuity::ConstantPorosityGradient, true) => {
-            "the dropped porosity gradient and the modulus in the rate form"
+            "the neglected porosity gradient and the modulus in rate form"
         }
     }
 }
@@ -96,12 +99,12 @@ mod tests {
         use oedometer_soil::continuity::Continuity::{Conservative, ConstantPorosityGradient};
         for (continuity, law, cause) in [
             (Conservative, Law::LogLinear, "the water's storage"),
-            (Conservative, Law::PorosityDependent, "the modulus in the rate form"),
-            (ConstantPorosityGradient, Law::LogLinear, "the dropped porosity gradient"),
+            (Conservative, Law::PorosityDependent, "the modulus in rate form"),
+            (ConstantPorosityGradient, Law::LogLinear, "the neglected porosity gradient"),
             (
                 ConstantPorosityGradient,
                 Law::PorosityDependent,
-                "the dropped porosity gradient and the modulus in the rate form",
+                "the neglected porosity gradient and the modulus in rate form",
             ),
         ] {
             let soil = Material { continuity, law, ..Material::default() };

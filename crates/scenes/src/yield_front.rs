@@ -9,7 +9,7 @@ use oedometer_soil::material::Material;
 /// The scene `yield-front`.
 pub static YIELD_FRONT: Scene = Scene {
     name: "yield-front",
-    summary: "preconsolidated column under a sudden load: a front of yielding runs in from its drained top",
+    summary: "preconsolidated column under a sudden load: a yield front advances from its drained top",
     question: Question::Layers,
     soil: clay,
     laws: Laws::Only(Law::Preconsolidated),

@@ -302,8 +302,8 @@ impl Checker<'_> {
             Ok(bound) if bound <= MOST_FELT_OF_BASE => return false,
             Ok(bound) => (
                 format!(
-                    "the solution is that of a half-space, and at T_v = {last} the base may change the pressures by \
-                     {bound:.1e} of the load"
+                    "the solution is for a half-space, but at T_v = {last} the base may change the \
+                     pressures by {bound:.1e} of the load"
                 ),
                 "ask for earlier time factors".to_owned(),
             ),

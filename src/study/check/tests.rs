@@ -58,7 +58,7 @@ mod point_sets {
             (of("xie-leo", ""), String::new(), "give a loading time"),
             (of("terzaghi", ""), String::new(), "has no `soils`"),
             (of("layered", ""), format!("{explicit}formulation = [\"u-p\"]"), "its pressure diffuses"),
-            (of("layered", ""), format!("{explicit}formulation = [\"quasi-static\"]"), "cannot be left out"),
+            (of("layered", ""), format!("{explicit}formulation = [\"quasi-static\"]"), "cannot be neglected"),
         ] {
             let error = checked(&scene, "\"GIMP\"", &more).expect_err(why);
             assert!(error.contains(why) && error.contains("--> t.toml:"), "{error}");

@@ -388,9 +388,9 @@ fn impossible_arguments_of_exact_are_refused() {
     }
     // A load under which the pores would close has no large-strain solution.
     let told = refused(&["exact", "xie-leo", "--set", "column.load=600e3"]);
-    assert_says(&told, &["press out more water than the pores hold"]);
+    assert_says(&told, &["expel more water than the pores hold"]);
     let told = refused(&["exact", "xie-leo", "--set", "column.loading_time=3"]);
-    assert_says(&told, &["load acts at once", "`large-strain` has a load that grows"]);
+    assert_says(&told, &["load is sudden", "`large-strain`, whose load may grow"]);
 }
 
 #[test]

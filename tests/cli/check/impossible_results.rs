@@ -43,7 +43,7 @@ fn steps_beyond_the_limit_are_unstable_long_before_they_are_beyond_all_numbers()
     let beyond = semi_implicit(1.5);
     let (kind, reason) = failure(&beyond).expect("beyond its limit");
     assert_eq!(kind, FailureKind::Unstable);
-    assert!(reason.contains("beyond what the scene can reach") && reason.contains("1.42"), "{reason}");
+    assert!(reason.contains("beyond what the problem can reach") && reason.contains("1.42"), "{reason}");
     assert!(beyond.errors.is_empty(), "no error is told of what is no result");
     assert_eq!(failure(&semi_implicit(0.1)), None);
     let undamped = record(

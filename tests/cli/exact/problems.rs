@@ -109,7 +109,7 @@ fn impossible_problems_are_refused_in_sentences() {
     refused(&["layered", "--set", "material.preconsolidation=1e4"], "has no effect");
     let front =
         ["yield-front", "--set", "material.preconsolidation=0.5", "--set", "material.reload_modulus=1e5"];
-    refused(&front, "below that of first loading");
+    refused(&front, "below the modulus of first loading");
     let never =
         ["yield-front", "--set", "material.preconsolidation=2", "--set", "material.reload_modulus=2e6"];
     refused(&never, "no yield front");

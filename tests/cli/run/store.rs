@@ -548,7 +548,7 @@ fn a_study_with_a_refused_case_fails_by_its_name_and_keeps_the_others() {
     assert_eq!(check.failed_cases.len(), 1);
     let note = &check.failed_cases[0];
     assert!(
-        note.case.contains("cells=6") && note.sentence.contains("Xie & Leo's load acts at once"),
+        note.case.contains("cells=6") && note.sentence.contains("Xie & Leo's load is sudden"),
         "{note:?}"
     );
 }

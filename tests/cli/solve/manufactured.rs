@@ -60,7 +60,7 @@ fn what_a_motion_cannot_have_is_refused_in_sentences() {
         (&["manufactured-box", "--set", "manufactured.amplitude_x=1.2"], "from 1 on it folds the body"),
         (&["manufactured-box", "--set", "manufactured.amplitude_x=0.7"], "the motion would close the pores"),
         (&["manufactured-shear", "--set", "material.law=log-linear"], "not known in closed form"),
-        (&["xie-leo", "--set", "material.law=neo-hookean"], "it belongs to the manufactured scenes"),
+        (&["xie-leo", "--set", "material.law=neo-hookean"], "it belongs to the manufactured solutions"),
         (&["xie-leo", "--set", "manufactured.pressure=1.0"], "has no [manufactured]"),
         (
             &["manufactured-box", "--method", "TL-GIMP-SRI-patch", "--set", "integrator.affine=true"],
@@ -78,7 +78,7 @@ fn what_a_motion_cannot_have_is_refused_in_sentences() {
             &["xie-leo", "--integrator", "explicit", "--set", "integrator.stress_slopes=true"],
             "the critical step with APIC or stress slopes is not predicted",
         ),
-        (&["manufactured-box", "--integrator", "semi-implicit"], "at times of their own"),
+        (&["manufactured-box", "--integrator", "semi-implicit"], "at different times"),
         (&["manufactured-box", "--set", "material.conductivity_mean=chord"], "the chord mean is for a flux"),
     ] {
         let (code, _, err) = told(&[&["solve"], arguments, &["--cells", "4"]].concat());

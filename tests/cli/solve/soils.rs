@@ -65,12 +65,12 @@ fn impossible_soils_are_refused_at_their_place() {
         ("layered", thin.as_str(), "0.1", "make the last layer 0.5 m thick"),
         ("layered", &dense, "0.1", "it is layer 2 from the base"),
         ("terzaghi", &two, "0.1", "has no layers"),
-        ("yield-front", "material.reload_modulus=1e5", "0.001", "below that of first loading"),
+        ("yield-front", "material.reload_modulus=1e5", "0.001", "below the modulus of first loading"),
         ("yield-front", "material.preconsolidation=2", "0.001", "no yield front"),
         ("yield-front", "column.initial_stress=0.1", "1", "ask for earlier time factors"),
         ("layered", "material.preconsolidation=2", "0.1", "has no effect"),
         ("terzaghi", "column.initial_stress=2", "0.1", "has no stress history"),
-        ("terzaghi", "material.law=preconsolidated", "0.1", "of no other scene"),
+        ("terzaghi", "material.law=preconsolidated", "0.1", "belongs to no other problem"),
     ] {
         let told = solve(&[scene, "--cells", "10", "--set", set, "--time-factor", more]);
         assert_eq!((told.code, told.out.as_str()), (2, ""), "{set}: {}", told.err);
@@ -106,7 +106,7 @@ fn impossible_footings_are_refused_at_their_place() {
         ("footing", &["--cells", "4", "--set", "material.law=linear"], "is `von-mises`"),
         ("footing", &["--cells", "4", "--integrator", "explicit"], "the integrator is `implicit`"),
         ("footing", &["--cells", "4", "--method", "PPP"], "a pressure projection"),
-        ("footing", &["--cells", "4", "--method", "CE-SRI-patch"], "total stress needs one"),
+        ("footing", &["--cells", "4", "--method", "CE-SRI-patch"], "which total stress needs"),
         ("cosine-layer", &["--cells", "4", "--set", "layer.plate=smooth"], "a plate belongs to"),
         ("terzaghi", &["--cells", "4", "--set", "material.undrained_strength=1e4"], "has no effect"),
     ] {

@@ -107,8 +107,8 @@ impl PhysicalBounds {
         let is_within = force <= most;
         (!is_within).then(|| {
             format!(
-                "the out-of-balance force at a node is {force:.3e} N, more than the {most:.3e} N that this scene can cause at \
-                 that time"
+                "the out-of-balance force at a node is {force:.3e} N, more than the {most:.3e} N that this \
+                 problem can cause at that time"
             )
         })
     }
@@ -121,7 +121,7 @@ impl PhysicalBounds {
             return None;
         }
         Some(format!(
-            "a settlement of {settlement:.3e} m is beyond what the scene can reach, {least:.3e} to {most:.3e} m"
+            "a settlement of {settlement:.3e} m is beyond what the problem can reach, {least:.3e} to {most:.3e} m"
         ))
     }
 
@@ -130,7 +130,7 @@ impl PhysicalBounds {
         let within = |pressure: &&f64| pressure.is_finite() && pressure.abs() <= self.pressure;
         let outside = pressures.iter().find(|pressure| !within(pressure))?;
         Some(format!(
-            "a pore pressure of {outside:.3e} Pa is beyond what the scene can reach, {:.3e} Pa",
+            "a pore pressure of {outside:.3e} Pa is beyond what the problem can reach, {:.3e} Pa",
             self.pressure
         ))
     }

@@ -74,8 +74,8 @@ impl EnergyAccount {
         let is_within = share <= most;
         (!is_within).then(|| {
             format!(
-                "energy grew by {rise:.3e} J without work, {share:.3} of all that was in motion: a step that is stable makes \
-                 less than {most}"
+                "energy grew by {rise:.3e} J without work, {share:.3} of all the energy in motion: a stable \
+                 step causes less than {most}"
             )
         })
     }

@@ -89,13 +89,13 @@ fn no_start(singular: Singular, time_limit: TimeLimit) -> Failure {
 
 /// The end of a run whose steps are shares of an unknown limit.
 fn no_limit(growing: &GrowingMode) -> Failure {
-    let reason = format!("{growing}; a step in `seconds` is taken as it is");
+    let reason = format!("{growing}; a step in `seconds` is not checked");
     at_start(StepFailure { kind: FailureKind::Unstable, reason }, Some(growing.growth))
 }
 
 /// The end of a run of double-point MPM by an integrator that has none.
 fn no_water_points(integrator: IntegratorKind) -> Option<Failure> {
-    let reason = format!("two sets of points are integrated explicitly, not by `{}`", integrator.name());
+    let reason = format!("two sets of points are integrated explicitly, not with `{}`", integrator.name());
     (integrator != IntegratorKind::Explicit)
         .then(|| at_start(StepFailure { kind: FailureKind::NotConverged, reason }, None))
 }

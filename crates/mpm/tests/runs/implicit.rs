@@ -414,7 +414,7 @@ fn full_integration_that_fails_in_the_plane_names_the_remedy() {
         })
         .collect();
     assert!(!reasons.is_empty());
-    assert!(reasons.iter().all(|reason| reason.contains("use pressures by cells (GIMP-SRI")), "{reasons:?}");
+    assert!(reasons.iter().all(|reason| reason.contains("use cell pressures (GIMP-SRI")), "{reasons:?}");
     assert_eq!(loaded_plane("TL-GIMP", [3.5e5, 1.0, 2e6], [8, 1], 0.14).status, RunStatus::Ok);
     assert_eq!(loaded_plane("GIMP-SRI", [2e5, 0.5, 1e7], [4, 2], 0.02).status, RunStatus::Ok);
 }

@@ -63,7 +63,7 @@ impl fmt::Display for GrowingMode {
         write!(out, "no limit is known: ")?;
         write!(
             out,
-            "under steps of {step:.2e} s too something grows by {rate:.2e} 1/s, by the eigenvalues of the step"
+            "even with steps of {step:.2e} s a mode grows by {rate:.2e} 1/s, from the eigenvalues of the step"
         )
     }
 }
@@ -356,8 +356,8 @@ mod tests {
     #[test]
     fn the_message_of_a_growing_mode_gives_its_growth_per_second() {
         let sentence = GrowingMode { step: 2e-3, growth: 1.5 }.to_string();
-        let wanted = "no limit is known: under steps of 2.00e-3 s too something grows by 2.50e2 1/s, by the eigenvalues of \
-                      the step";
+        let wanted = "no limit is known: even with steps of 2.00e-3 s a mode grows by 2.50e2 1/s, from the \
+                      eigenvalues of the step";
         assert_eq!(sentence, wanted);
     }
 }

@@ -421,6 +421,6 @@ mod tests {
         };
         let outcome = run(problem::<1>(&TERZAGHI, "GIMP", [2, 2], 1.0), &schedule, &|_, _| true);
         let RunStatus::Failed(failure) = outcome.status else { panic!("solved") };
-        assert!(failure.reason.contains("integrated explicitly, not by `implicit`"), "{}", failure.reason);
+        assert!(failure.reason.contains("integrated explicitly, not with `implicit`"), "{}", failure.reason);
     }
 }

@@ -396,18 +396,18 @@ impl<const D: usize> NewtonStepper<D> {
         let remedy = if kind == FailureKind::Stopped {
             return StepFailure { kind, reason };
         } else if is_known {
-            "in the plane a pressure at every point leaves modes without stiffness once points have moved: use \
-                      pressures by cells (GIMP-SRI, GIMP-SRI-patch), or shape functions on the initial configuration \
+            "in the plane a pressure at every point leaves modes without stiffness once points have moved: \
+             use cell pressures (GIMP-SRI, GIMP-SRI-patch), or shape functions on the initial configuration \
                       (TL-GIMP)"
         } else if kind != FailureKind::NotConverged {
             return StepFailure { kind, reason };
         } else if is_chord {
-            "the chord mean jumps where the points of a node lie so that they tell no slope: take \
+            "the chord mean jumps where the points around a node determine no slope: use \
              `conductivity_mean = \"points\"`, or points on their lattice"
         } else if self.stages.len() == 1 {
-            "an explicit skeleton bounds the step: take a smaller `time_step`, or the integrator `implicit`"
+            "an explicit skeleton bounds the step: use a smaller `time_step`, or the integrator `implicit`"
         } else {
-            "shorter steps did not help: take pressures by cells (GIMP-SRI-patch), shape functions on the initial \
+            "shorter steps did not help: use cell pressures (GIMP-SRI-patch), shape functions on the initial \
              configuration (TL-), more points per cell, or a smaller load"
         };
         StepFailure { kind, reason: format!("{reason}; {remedy}") }
