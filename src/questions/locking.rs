@@ -14,7 +14,7 @@ use std::cmp::Reverse;
 /// Who locks?
 pub static LOCKING: Question = Question {
     id: "locking",
-    heading: "Who locks?",
+    heading: "Which methods lock?",
     template: include_str!("locking.md"),
     places: &[Place::Terminal, Place::Study, Place::Report],
     ask,
@@ -87,7 +87,8 @@ fn table(rows: &[&SweepRow], ratios: &[f64]) -> Table {
         [Cell::Code(row.method.to_string()), loss(row, ratios)].into_iter().chain(errors).collect()
     });
     Table::of("Errors over Poisson's ratio", columns(&header), cells).file("locking").note(format!(
-        "relative L2 errors of the nodal displacement and of the pressure at the points; above {limit} %: either of them"
+        "relative L2 errors of the nodal displacement and of the pressure at the points; above {limit} %: \
+         the first ratio at which either exceeds it"
     ))
 }
 

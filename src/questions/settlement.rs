@@ -257,7 +257,7 @@ mod tests {
         assert_eq!(shown[0], ["365 days", "0.08536", "45.7 %", "33.8", "33.46", "-1.00 %"]);
         assert_eq!(shown[1], ["40 days", "0.08536", "–", "33.8", "–", "–"]);
         let answer = answer("s", &[found]).expect("a run");
-        let told = "`MPM` is at most 1.00 % off Terzaghi's solution with compressible water.";
+        let told = "`MPM` differs from Terzaghi's solution with compressible water by at most 1.00 %.";
         assert_eq!(answer.sentence().expect("a sentence"), told);
     }
 

@@ -21,7 +21,7 @@ use serde::Serialize;
 /// What comes within a bound, and at what cost?
 pub static WITHIN: Question = Question {
     id: "within",
-    heading: "What comes within a bound?",
+    heading: "What does it take to meet a tolerance?",
     template: include_str!("within.md"),
     places: &[Place::Terminal, Place::Study],
     ask: |studies| Ok(ask(studies)),
@@ -125,9 +125,10 @@ fn table(all: &[QuantityWithin]) -> Table {
     }
     let has = |mark: &str| rows.iter().flatten().any(|cell: &Cell| cell.show().starts_with(mark));
     let notes = [
-        has("✗")
-            .then(|| "✗: no run whose checks pass is within the bound; the least error is shown".to_owned()),
-        has("•").then(|| "•: no finer mesh confirms it".to_owned()),
+        has("✗").then(|| {
+            "✗: no run that passes its checks is within the bound; the smallest error is shown".to_owned()
+        }),
+        has("•").then(|| "•: not confirmed by a finer mesh".to_owned()),
         has("≥").then(|| "≥: no longer step was tried".to_owned()),
     ];
     let notes: Vec<String> = notes.into_iter().flatten().chain(far_words(all)).collect();

@@ -33,7 +33,7 @@ pub fn annotations_of(checks: &[StudyCheck], file_of: impl Fn(&str) -> Option<St
         }
         match &check.golden {
             Err(_) if check.end() == CheckEnd::HeldBack => {
-                add("warning", 1, "not run", "its programs may not be started without --allow-solvers");
+                add("warning", 1, "not run", "its programs must not be started without --allow-solvers");
             }
             Err(error) => add("error", 1, "golden values", &error.to_string()),
             Ok(_) => {
@@ -44,7 +44,7 @@ pub fn annotations_of(checks: &[StudyCheck], file_of: impl Fn(&str) -> Option<St
             }
         }
         for sentence in TakenOver::sentences(&check.taken_over) {
-            add("notice", 1, "taken over", &sentence);
+            add("notice", 1, "reused", &sentence);
         }
         for warning in &check.warnings {
             add("warning", 1, "wall time", warning);

@@ -45,7 +45,7 @@ pub fn studies_page(all: &[StudyResults<'_>]) -> Page {
         ),
         sections,
         footer: first.map_or(String::new(), |record| footer(&record.provenance)),
-        filter: Some("Words that a study has".to_owned()),
+        filter: Some("Filter studies by keyword".to_owned()),
         files: Some("studies".to_owned()),
         ..Page::default()
     }

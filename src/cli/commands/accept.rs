@@ -47,7 +47,7 @@ pub struct Arguments {
 /// Runs the CI tier, as it is and with last digits changed, and writes values and tolerances.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if arguments.reason.trim().is_empty() {
-        return Err(Ended::usage("a golden value needs a reason: --reason \"why the new values are right\""));
+        return Err(Ended::usage("golden values need a reason: --reason \"why the new values are right\""));
     }
     refuse_without_origin()?;
     let reason = arguments.reason.trim();
@@ -122,8 +122,8 @@ fn refuse_failing(studies: &[Study], records: &[Vec<Record>], despite: bool) -> 
     if fails && !despite {
         return Err(Ended::with(
             Exit::VerdictFailed,
-            "nothing was accepted, because these fail: fix the code or the expectations first, or accept \
-             the values with --despite-failing",
+            "nothing was accepted, because these fail: fix the code or the expectations, or accept the \
+             values with --despite-failing",
         ));
     }
     Ok(())
@@ -135,7 +135,9 @@ fn refuse_failing(studies: &[Study], records: &[Vec<Record>], despite: bool) -> 
 /// A sentence that says which.
 pub fn refuse_without_origin() -> anyhow::Result<()> {
     if is_on("CI") {
-        return Err(Ended::usage("golden values are not accepted in CI: review them first, on your machine"));
+        return Err(Ended::usage(
+            "golden values are not accepted in CI: review and accept them on your own machine",
+        ));
     }
     if Provenance::of_this_program().dirty {
         return Err(Ended::usage(

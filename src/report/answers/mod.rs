@@ -81,7 +81,7 @@ impl Making {
         let records: usize = studies.iter().map(|one| one.records.len()).sum();
         let program = origins.main().map_or_else(String::new, program_of);
         let several = origins.several_programs().map_or_else(String::new, |programs| {
-            format!(" The records are of more than one program: {programs}.")
+            format!(" The records come from more than one program: {programs}.")
         });
         let run = match self.cases_run {
             0 => format!("rendered in {:.1} s from {records} records", self.seconds),
@@ -329,7 +329,8 @@ mod tests {
         assert!(several.starts_with("oedometer 2 ·"), "{several}");
         assert!(
             several.ends_with(
-                " The records are of more than one program: 1 of version 1 and sources abc, 2 of version 2 and sources abc."
+                " The records come from more than one program: 1 of version 1 and sources abc, 2 of version \
+                 2 and sources abc."
             ),
             "{several}"
         );

@@ -70,21 +70,23 @@ pub(crate) fn section(race: &RaceFindings, answers: &Answers<'_>) -> Result<Sect
     let choice = answers.to("choice").map(Finding::sentence).transpose()?.unwrap_or_default();
     let more = format!("[Every method in every problem]({PAGE}) · [profile.csv](tables/profile.csv)");
     let blocks = vec![Block::Switch(views.to_vec()), Block::Paragraph(format!("{choice}\n\n{more}"))];
-    Ok(Section::new("Which method should I take?", "choice", blocks))
+    Ok(Section::new("Which method should I use?", "choice", blocks))
 }
 
 /// What speaks for the race, and where its choice turns.
 fn trust(race: &RaceFindings, answers: &Answers<'_>) -> Vec<String> {
     let checks = || answers.studies.iter().map(|one| &one.check);
     let mut points = vec![format!(
-        "{} of {} [expectations](#expected) met; the race's numbers are pinned by golden values, not by expectations",
+        "{} of {} [expectations](#expected) met; the benchmark's numbers are guarded by golden values, not \
+         by expectations",
         checks().map(StudyCheck::met).sum::<usize>(),
         checks().map(|check| check.judgements.len()).sum::<usize>()
     )];
     let printed = answers.to("paper").and_then(|paper| paper.facts["printed_settlement"].as_f64());
     points.extend(printed.map(|off| {
         format!(
-            "the paper's equations as printed settle {:+.1} % in the end beside Xie & Leo's: [the audit](#paper)",
+            "with the paper's equations as printed the final settlement is {:+.1} % off Xie & Leo's: [the \
+             audit](#paper)",
             100.0 * off
         )
     }));
@@ -93,7 +95,7 @@ fn trust(race: &RaceFindings, answers: &Answers<'_>) -> Vec<String> {
     }
     let turns = facts(race).turns();
     if !turns.is_empty() {
-        points.push(format!("the choice turns with {turns}: [where it holds]({PAGE}#answers)"));
+        points.push(format!("the choice changes with {turns}: [where it holds]({PAGE}#answers)"));
     }
     points
 }
@@ -127,8 +129,9 @@ fn answer_table(findings: &RaceFindings) -> Table {
     let heads = "group | read | method | > reaches 1 % | > share | > interval | > within twice the cheapest | > most work, of any group | > methods not told apart | \
                  each output | half, twice the budget | 0.5, 2, 5 % | read the other way";
     Table::of("The methods to take, and where that holds", columns(heads), rows).note(
-        "share: families of problems weigh alike; the method with the largest sum of both shares, and those within 0.03 of it; interval: \
-         nine tenths of the shares when problems are drawn anew; not told apart: intervals of both shares overlap",
+        "share: families of problems have equal weight; the method with the largest sum of both shares, and \
+         those within 0.03 of it; interval: nine tenths of the shares when problems are resampled; not told \
+         apart: intervals of both shares overlap",
     )
 }
 
@@ -146,7 +149,7 @@ fn operator_table(findings: &RaceFindings) -> Table {
     heads.extend(races().map(|(group, read_out)| {
         TableColumn::number(format!("{}, {}", words_of(group), places_of(read_out)))
     }));
-    Table::of("Problems that reach 1 % without and with each operator", heads, rows)
+    Table::of("Problems in which 1 % is reached without and with each operator", heads, rows)
 }
 
 /// Outputs, meshes and budgets.
@@ -198,8 +201,8 @@ fn profile_figure(findings: &RaceFindings, group: Group, read_out: ReadOut) -> F
     chart.series.extend(named.iter().zip(slots).map(|(one, slot)| {
         Series::new(one.method.clone(), staircase(&one.steps)).style(Style::Line).slot(slot)
     }));
-    let caption = "Left end: how often a method is the cheapest; right end: how often it reaches 1 % (Dolan & Moré; beyond the first \
-                   place profiles compare with the first alone).";
+    let caption = "Left end: how often a method is the cheapest; right end: how often it reaches 1 % (Dolan \
+                   & Moré; only the first place in a profile is a ranking).";
     Figure::new(format!("race-profile-{}-{}", group.name(), read_out.name()), chart, caption)
 }
 
@@ -249,7 +252,7 @@ pub fn matrix_page(findings: &RaceFindings) -> Page {
     ));
     if !findings.properties.is_empty() {
         let table = Block::Table(property_table(findings));
-        sections.push(Section::new("Properties that are no errors", "properties", vec![table]));
+        sections.push(Section::new("Properties other than errors", "properties", vec![table]));
     }
     Page {
         title: "Which method reaches one per cent?".to_owned(),
@@ -316,7 +319,7 @@ fn matrix(situations: &[Situation], read_out: ReadOut) -> Table {
         let mut row = vec![Cell::Link { words: situation.title.clone(), target: target.clone() }];
         row.extend(CONTENDERS.iter().map(|one| match situation.entry(one.name) {
             Some(entry) => cell(entry),
-            None => Cell::missing("the same run as without TL-"),
+            None => Cell::missing("same run as without TL-"),
         }));
         row
     });
@@ -344,5 +347,6 @@ fn property_table(findings: &RaceFindings) -> Table {
         columns("method | > critical step over the formula's | > velocity at hydrostatic equilibrium over k | > skeleton | > water"),
         rows,
     )
-    .note("skeleton, water: asymmetry of the stiffness; round-off where the forces do the power of the stresses")
+    .note("skeleton, water: asymmetry of the stiffness; round-off if the power of the forces equals that of \
+           the stresses")
 }

@@ -100,13 +100,13 @@ fn every_question_is_answered_by_a_sentence_and_a_short_table_or_not_put() {
     let markdown = render_markdown(&page).expect("a page");
     for question in [
         "How was it made?",
-        "Which method should I take?",
+        "Which method should I use?",
         "Does it converge, how fast, and to what?",
         "What changed?",
     ] {
         assert!(markdown.contains(question), "{question}\n{markdown}");
     }
-    for question in ["What does accuracy cost?", "Who locks?"] {
+    for question in ["What does accuracy cost?", "Which methods lock?"] {
         assert!(!markdown.contains(question), "nothing was run for it: {question}\n{markdown}");
     }
     for section in &page.sections {
@@ -258,7 +258,7 @@ fn a_sweep_of_poisson_s_ratio_in_the_plane_says_who_locks_and_from_where() {
     let told = call(folder.path(), &["report", "short.toml", "--out", "made"]);
     assert_eq!(told.code, 0, "{}", told.err);
     let page = fs::read_to_string(folder.path().join("made/README.md")).expect("a page");
-    let answer = page.split("## Who locks?").nth(1).expect(&page);
+    let answer = page.split("## Which methods lock?").nth(1).expect(&page);
     assert!(
         answer.contains("1 of 2 methods on 8 cells keeps displacement and pressure within 10 % up to ν = 0.4999 at T_v = 0.1: `GIMP-Bbar-patch`"),
         "{answer}"

@@ -15,7 +15,7 @@ fn cb_geos_hdf5_has_its_pore_pressure_in_a_state_variable_of_the_liquid() {
     let mapping = mapping.to_str().expect("UTF-8");
     let more = ["--preset", "cb-geo", "--mapping", mapping, "--set-time-step", "0.8175"];
     let told = score(&foreign("cb-geo"), &["particles*.h5"], &more);
-    assert!(told.err.contains("your p is 0 everywhere: is it another array"), "{}", told.err);
+    assert!(told.err.contains("your p is 0 everywhere: is it the wrong array"), "{}", told.err);
 }
 
 /// Places of single precision, packed arrays, a stress of nine components.

@@ -141,8 +141,8 @@ impl RawRow {
             && !is_inside(distance, length)
         {
             return Err(refused(format!(
-                "the initial distance {distance} m from the crest is outside the layer of {length} m: look at the \
-                 unit, the sign and the origin of `x`, and at whether places are initial or current"
+                "the initial distance {distance} m from the crest is outside the layer of {length} m: check \
+                 the unit, the sign and the origin of `x`, and whether places are initial or current"
             )));
         }
         let pore = self.pressure.map(|p| (p - mapping.origin.p) * stress * compressive(sign.p));
@@ -179,14 +179,14 @@ impl RawRow {
 fn outside(place: f64, extent: f64, is_turned: bool) -> String {
     if is_turned {
         format!(
-            "the initial distance {place} m from the middle is outside the slab, whose drained side lies at {extent} m: look at \
-             the unit, the sign and the origin of `x`, whether places are initial or current, and whether the axes are \
-             exchanged: x runs along the drained direction"
+            "the initial distance {place} m from the middle is outside the slab, whose drained side lies at \
+             {extent} m: check the unit, the sign and the origin of `x`, whether places are initial or \
+             current, and whether the axes are exchanged: x runs along the drained direction"
         )
     } else {
         format!(
-            "the initial height {place} m is outside the column of {extent} m: look at the unit and the sign of `y`, and at \
-             whether places are initial or current"
+            "the initial height {place} m is outside the column of {extent} m: check the unit and the sign \
+             of `y`, and whether places are initial or current"
         )
     }
 }
@@ -304,14 +304,14 @@ mod tests {
         }
         let high = |height: &str| {
             format!(
-                "a: the initial height {height} m is outside the column of 2 m: look at the unit and the sign of `y`, and at \
-                 whether places are initial or current"
+                "a: the initial height {height} m is outside the column of 2 m: check the unit and the sign \
+                 of `y`, and whether places are initial or current"
             )
         };
         let far = |distance: &str| {
             format!(
-                "a: the initial distance {distance} m from the crest is outside the layer of 8 m: look at the unit, the sign \
-                 and the origin of `x`, and at whether places are initial or current"
+                "a: the initial distance {distance} m from the crest is outside the layer of 8 m: check the \
+                 unit, the sign and the origin of `x`, and whether places are initial or current"
             )
         };
         for (place, told) in [
