@@ -154,7 +154,7 @@ mod tests {
     fn a_changed_input_fails_in_every_form_although_no_value_moved() {
         let changed =
             StudyCheck { other_inputs: vec!["MPM cells=4".to_owned()], warnings: Vec::new(), ..check(0) };
-        let told = "1 {has} other inputs than its golden values, like `MPM cells=4`: `git diff` of the \
+        let told = "1 case has other inputs than its golden values, like `MPM cells=4`: `git diff` of the \
                     study shows which";
         let lines = annotations_of(std::slice::from_ref(&changed), |_| None);
         assert_eq!(lines, [format!("::error title=study%3A inputs changed::{told}")]);

@@ -387,7 +387,7 @@ mod tests {
         for (shape, component) in [(&[2, 9, 3][..], &component), (&[4, 9, 3], &quantity())] {
             let asked = told(&[9], shape, &[1.0, 2.0, 3.0], component);
             let is_asked = |why: &String| {
-                why.contains("that of axis 3: say which axis is which, like `p[1, node, time]`")
+                why.contains("that of axis 3: state which axis is which, like `p[1, node, time]`")
             };
             assert!(asked.as_ref().is_err_and(is_asked), "{asked:?}");
         }
