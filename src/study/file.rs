@@ -60,16 +60,16 @@ pub struct StudyFile {
     /// Output times, and the exact solutions to compare with.
     #[serde(default)]
     pub output: OutputTable,
-    /// External solvers, whose names then stand among the methods of a sweep.
+    /// External solvers, whose names can then be methods of a sweep.
     #[serde(default)]
     pub solver: Vec<SolverTable>,
-    /// Results that external solvers have left already, whose names stand among the methods too.
+    /// Existing results of external solvers, whose names count as methods too.
     #[serde(default)]
     pub result: Vec<ResultTable>,
     /// Blocks of cases: the product of the lists, or zipped lists.
     #[serde(default)]
     pub sweep: Vec<Placed<SweepTable>>,
-    /// What must be found; judged by `check`.
+    /// What series must show; judged by `check`.
     #[serde(default)]
     pub expect: Vec<Placed<ExpectTable>>,
     /// What single cases must do; judged by `check`.
@@ -78,7 +78,7 @@ pub struct StudyFile {
     /// How the cases are timed.
     #[serde(default)]
     pub timing: TimingTable,
-    /// Golden values: `"none"` where expectations alone judge, or a table with the tolerance of all values.
+    /// Golden values: `"none"` if only expectations judge, or a table with the tolerance of all values.
     #[serde(default)]
     #[schemars(schema_with = "golden")]
     pub golden: Typed<GoldenRule>,
@@ -237,7 +237,7 @@ pub struct SweepTable {
     pub tier: Tier,
 }
 
-/// What must be found of the series of the cases that its inputs name.
+/// What the series of the cases that its inputs select must show.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(transform = |schema: &mut Schema| add_inputs(schema, "sweep", false))]
@@ -286,7 +286,7 @@ pub struct ExpectTable {
     pub tier: Tier,
 }
 
-/// What the single cases that its inputs name must do.
+/// What the single cases that its inputs select must do.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(transform = |schema: &mut Schema| add_inputs(schema, "sweep", false))]
@@ -403,7 +403,7 @@ pub struct XfailTable {
     pub reason: String,
 }
 
-/// A program that solves a case of the study and leaves a result.
+/// A program that solves a case of the study and writes a result.
 ///
 /// `{case}`, `{out}`, `{study}`, `{cells}`, `{points_per_cell}`, `{time_step}` and `{end_time}` stand for values of
 /// the case in `command`, `result` and `env`. A word that names a file beside the study stands for that file.
@@ -414,39 +414,39 @@ pub struct SolverTable {
     pub name: Placed<String>,
     /// The program and its arguments, word by word; no shell reads them.
     pub command: Placed<Vec<Placed<String>>>,
-    /// The result that it leaves, below `{out}`; `*` and `?` stand for several files.
+    /// The result that it writes, below `{out}`; `*` and `?` stand for several files.
     pub result: Placed<String>,
     /// File beside the study that says what the result's columns or arrays mean.
     pub mapping: Typed<String>,
-    /// Program whose files are known; a mapping goes over it.
+    /// Program whose files are known; a mapping overrides it.
     #[serde(default)]
     #[schemars(schema_with = "presets")]
     pub preset: Typed<String>,
-    /// Command that prints its version; its first line is kept in the record.
+    /// Command that prints its version; the first line is kept in the record.
     pub version: Typed<Vec<Placed<String>>>,
-    /// `version`: results are taken over while the output of the version command and the content of the command's files
-    /// and of those in `known_by` stay the same. Left out: it is always run.
+    /// `version`: results are reused while the output of the version command and the content of the command's files and
+    /// of those in `known_by` stay the same. Without it, the program always runs.
     #[schemars(extend("enum" = ["version"]))]
     pub reuse: Typed<String>,
-    /// Files and folders that the program is made of, from the folder of the study; with `reuse`.
+    /// Files and folders that the program is made of, relative to the folder of the study; with `reuse`.
     pub known_by: Typed<Vec<Placed<String>>>,
-    /// Longest wall time of one run, s; `case_seconds` of the study where it is left out.
+    /// Longest wall time of one run, s; `case_seconds` of the study by default.
     #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
     pub timeout: Typed<f64>,
-    /// Runs of each case that are timed, 1 where it is left out; their results must agree.
+    /// Timed runs of each case, 1 by default; their results must agree.
     pub repeats: Typed<i64>,
-    /// Whether a run goes before the timed ones; where it is left out, it does before several.
+    /// Whether an untimed run precedes the timed ones; by default only before several.
     pub warm_up: Option<bool>,
-    /// How many of its runs may go on at the same time, 1 where it is left out.
+    /// Number of its simultaneous runs, 1 by default.
     pub at_once: Typed<i64>,
-    /// Variables of its environment beside those of this program.
+    /// Environment variables in addition to those of this program.
     #[serde(default)]
     pub env: BTreeMap<String, Placed<String>>,
-    /// Further files of the adapter beside the study: they belong to the identity of its cases.
+    /// Further files of the adapter, beside the study: they belong to the identity of its cases.
     pub files: Typed<Vec<Placed<String>>>,
-    /// Regular expression whose first group is the time in its output that it says it took.
+    /// Regular expression whose first group is the run time that the program reports in its output.
     pub solve_seconds: Typed<String>,
-    /// Unit of that time: `s` where it is left out, or `ms`, `min`, `h`.
+    /// Unit of that time: `s` by default, or `ms`, `min`, `h`.
     pub solve_unit: Typed<String>,
     /// Seconds from one numbered step to the next, where file names have the number of the step.
     #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
@@ -461,7 +461,8 @@ pub struct SolverTable {
 pub struct ResultTable {
     /// Its name among the methods.
     pub name: Placed<String>,
-    /// Files of one mesh, from the folder of the study: `{cells}` stands for the mesh, `*` and `?` for several files.
+    /// Files of one mesh, relative to the folder of the study: `{cells}` stands for the mesh, `*` and `?` for several
+    /// files.
     pub files: Placed<Vec<Placed<String>>>,
     /// Cells over the height of each mesh.
     pub cells: Placed<Vec<Placed<i64>>>,

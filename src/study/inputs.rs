@@ -194,20 +194,20 @@ pub struct TimeStepTable {
 pub struct MethodTable {
     /// Shape functions between points and nodes.
     pub basis: Basis,
-    /// Gradient from which the effective stress takes its strain.
+    /// Gradient that gives the strain for the effective stress.
     pub strain: StrainGradient,
     /// How the pore pressure is integrated.
     pub pressure: PressureIntegration,
-    /// How the pressure of a cell becomes a field again.
+    /// How a field is recovered from the pressures of cells.
     pub recovery: Typed<Recovery>,
-    /// Where the pressure is remembered.
+    /// Where the pressure is stored.
     #[serde(default)]
     pub memory: Memory,
-    /// What volume a point integrates.
+    /// Integration volume of a point.
     #[serde(default)]
     pub quadrature: Quadrature,
-    /// Parameter of a pressure projection over that of its source, 1 where nothing is named.
+    /// Parameter of a pressure projection relative to the published one, 1 by default.
     pub projection: Typed<f64>,
-    /// Configuration on which the operators live.
+    /// Configuration in which the operators act.
     pub configuration: Typed<Configuration>,
 }

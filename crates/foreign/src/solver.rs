@@ -57,7 +57,7 @@ pub const PLACEHOLDERS: [(&str, &str); 7] = [
     ("end_time", "time of the last output, s"),
 ];
 
-/// A program that solves a case of the study and leaves a result.
+/// A program that solves a case of the study and writes a result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExternalSolver {
     /// Its name, with the digest of its command and files.

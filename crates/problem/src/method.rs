@@ -34,7 +34,7 @@ impl Basis {
     }
 }
 
-/// Gradient from which the effective stress takes its strain.
+/// Gradient that gives the strain for the effective stress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StrainGradient {
     /// The gradient of the basis.

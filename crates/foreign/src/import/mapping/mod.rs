@@ -25,7 +25,7 @@ pub struct Mapping {
     #[serde(default = "points")]
     pub sample: Sample,
     /// Sum of the volumes of all samples, in the unit of their column. Without it, volumes whose sum is not a volume of
-    /// the scene are taken as weights.
+    /// the problem are used as weights.
     #[serde(default)]
     pub whole_volume: Option<f64>,
     /// Names of the columns, as the header spells them, or of arrays: `displacement[1]` is the second component,
@@ -41,7 +41,7 @@ pub struct Mapping {
     /// Whether places are initial or current, for both x and y.
     #[serde(default)]
     pub position: Position,
-    /// Coordinates in the file at the end from which x and y count, in its unit of length.
+    /// Coordinates in the file of the end from which x and y count, in its unit of length.
     #[serde(default)]
     pub origin: Origin,
     /// Names of the files that a program writes side by side for one state, like `*_MPScalar_*.vtk` and
@@ -168,7 +168,7 @@ pub struct ColumnNames {
     /// Height or depth, or the place across a slab; `y` by default.
     #[serde(default = "height_column")]
     pub y: String,
-    /// Excess pore pressure; of a table with one column per height, `{ "p0" = 0.0, "p1" = 0.1 }`.
+    /// Excess pore pressure; in a table with one column per height, `{ "p0" = 0.0, "p1" = 0.1 }`.
     pub p: Option<ColumnName>,
     /// Horizontal displacement of the skeleton.
     pub u_x: Option<ColumnName>,
@@ -176,7 +176,7 @@ pub struct ColumnNames {
     pub u_y: Option<ColumnName>,
     /// Vertical effective stress.
     pub effective_stress: Option<ColumnName>,
-    /// Volume or weight of each place; equal weights by default, of data on cells the volumes of the cells.
+    /// Volume or weight of each place; equal weights by default, for data on cells the volumes of the cells.
     pub volume: Option<String>,
 }
 
@@ -265,7 +265,8 @@ pub struct Units {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Signs {
-    /// `right` from the scene's `x = 0` (the crest of a layer's load, the middle of a slab), or `left` from its other end;
+    /// `right` from the problem's `x = 0` (the crest of a layer's load, the middle of a slab), or `left` from its other
+    /// end;
     /// `right` by default.
     pub x: Option<HorizontalSense>,
     /// `up` from the base, or `down` from the initial surface; `up` by default.
@@ -297,7 +298,7 @@ pub struct Origin {
     pub x: f64,
     /// At the base, or at the initial surface.
     pub y: f64,
-    /// Pressure of the air, in the unit of stresses, where the file has absolute pressures: 101325.0 Pa.
+    /// Atmospheric pressure, in the unit of stresses, if the file has absolute pressures: 101325.0 Pa.
     pub p: f64,
 }
 

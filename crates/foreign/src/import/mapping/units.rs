@@ -162,8 +162,8 @@ pub struct Time {
     /// Seconds from one numbered step to the next, if file names have the number of the step.
     #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
     pub step: Option<f64>,
-    /// The file name, or its path from a folder on, with `{step}` where the number of the step stands and `*` for what
-    /// differs; the last number of the name by default.
+    /// The file name, or its path from a folder on, with `{step}` in place of the step number and `*` for what differs;
+    /// the last number of the name by default.
     pub pattern: Option<String>,
 }
 
@@ -192,7 +192,7 @@ pub struct Hydrostatic {
     /// Its unit weight, Pa per m.
     #[schemars(extend("type" = ["number", "string"], "unit" = "N/m³"))]
     pub unit_weight: f64,
-    /// Height of its table over the base, m; the surface by default.
+    /// Height of its table above the base, m; the surface by default.
     #[schemars(extend("type" = ["number", "string"], "unit" = "m"))]
     pub surface: Option<f64>,
 }
