@@ -1,11 +1,11 @@
 """Exact solutions of consolidation, and verdicts on results, as arrays.
 
 Everything is SI. A pressure is positive in compression, an effective stress in tension, a displacement upward, a
-settlement downward. Depths ``zeta`` are over the height, 0 at the drained surface; heights ``y`` count from the base.
+settlement downward. Depths ``zeta`` are relative to the height, 0 at the drained surface; heights ``y`` are measured from the base.
 ``T_v = c_v t/H**2`` with the drained ``c_v``.
 
-Lists of numbers may be anything that iterates, or numpy arrays. Where numpy is installed, arrays come back, else nested
-lists of the same shape. Nothing is computed in Python: every number is the one that the command ``oedometer`` prints.
+Lists of numbers may be any iterables or numpy arrays. If numpy is installed, arrays are returned, otherwise nested lists of
+the same shape. Nothing is computed in Python: every number is the one that the command ``oedometer`` prints.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def _inputs(given: Dict[str, Any]) -> List[Tuple[str, str]]:
 class Exact:
     """An exact solution at times and depths.
 
-    An index is left out where a single number was asked for: ``exact("terzaghi", 0.1, 0.5).pressure`` is a number.
+    An index is omitted where a single number was given: ``exact("terzaghi", 0.1, 0.5).pressure`` is a number.
     """
 
     time: Any
@@ -141,15 +141,15 @@ def exact(
     zeta : array_like
         Depths over the height, 0 at the drained surface. Fields have the shape ``[time][depth]``.
     x : array_like, optional
-        Distances from the crest of a layer's load, over its length: fields are then ``[time][depth][x]``; without it they
-        are those under the crest. Of ``mandel`` distances from the middle over the half width, and no ``zeta``.
+        Distances from the crest of a layer's load, relative to its length: fields are then ``[time][depth][x]``; without it
+        they are those under the crest. For ``mandel`` distances from the middle over the half width, without ``zeta``.
     **material
         Keys of study files: ``youngs_modulus`` (Pa), ``hydraulic_conductivity`` (m/s), ``load`` (Pa), ``height`` (m), …
 
     Raises
     ------
     ValueError
-        With a sentence where a name or a value is refused.
+        If a name or a value is refused, with the reason.
 
     Examples
     --------
@@ -175,7 +175,7 @@ def exact(
 
 
 class Table(Dict[str, Any]):
-    """Columns by their names: arrays where numpy is installed, else lists.
+    """Columns by name: arrays if numpy is installed, otherwise lists.
 
     ``table["value"]`` is a column, ``len(table.rows())`` the number of rows, ``table.to_pandas()`` a data frame.
     """
@@ -191,7 +191,7 @@ class Table(Dict[str, Any]):
         return cls(columns)
 
     def rows(self) -> List[Dict[str, Any]]:
-        """The rows, a dictionary each."""
+        """The rows, each as a dictionary."""
         plain = [list(column) if isinstance(column, list) else column.tolist() for column in self.values()]
         return [dict(zip(self, row)) for row in zip(*plain)]
 
@@ -211,7 +211,7 @@ class Score:
     ``sample``, ``norm`` (l1, l2, linf, relative), ``reference``, ``value`` (relative) and ``absolute`` (over the load, or
     over the final settlement)."""
     worst: Table
-    """The place that carries most of each error: ``zeta``, ``computed``, ``exact``, ``share`` of the squared error."""
+    """The place with the largest part of each error: ``zeta``, ``computed``, ``exact``, ``share`` of the squared error."""
     warnings: List[str]
     """What the result lacks."""
     diagnosis: List[str]
@@ -219,7 +219,7 @@ class Score:
     reference: str
     """The reference of the problem itself."""
     name: str = ""
-    """The files, where it was read from files."""
+    """The files, if it was read from files."""
     series: Table = field(default_factory=Table)
     """For results on several meshes, one row per measure: ``time_factor``, ``quantity``, ``sample``, ``norm``, ``reference``,
     the ``cells`` of the meshes with their ``errors``, ``order``, ``class`` and ``reason``."""
@@ -233,8 +233,8 @@ class Score:
         norm: Optional[str] = None,
         reference: Optional[str] = None,
     ) -> float:
-        """One error: ``l2`` of a field and ``relative`` of a settlement where no norm is named, against the problem's own
-        reference, at the time nearest to ``time_factor`` within a thousandth. ``KeyError`` where there is none."""
+        """One error: by default ``l2`` of a field and ``relative`` of a settlement, against the problem's own
+        reference, at the time nearest to ``time_factor`` within a thousandth. Raises ``KeyError`` if there is none."""
         norm = norm or ("relative" if quantity == "settlement" else "l2")
         reference = reference or self.reference
         near = [
@@ -273,38 +273,38 @@ def score(
     scene : str
         Benchmark problem, like ``terzaghi``.
     data : pandas.DataFrame, xarray.Dataset, meshio.Mesh or sequence of (time, meshio.Mesh), optional
-        The result as a whole, in place of the arrays below: its columns or arrays are read as those of a file, and
+        The result as a whole, instead of the arrays below: its columns or arrays are read as those of a file, and
         ``mapping`` says what they mean, as in :func:`score_files`.
     time, height : array_like
-        Times (s) ``[time]``, and *initial* heights over the base (m) ``[place]``. Of ``mandel`` heights are the places
-        across, which may be left out.
+        Times (s) ``[time]``, and *initial* heights above the base (m) ``[place]``. For ``mandel`` heights are the places
+        across, which may be omitted.
     pressure, effective_stress : array_like, optional
-        Pa, ``[time][place]``, or ``[place]`` of a single time; compression and tension positive.
+        Pa, ``[time][place]``, or ``[place]`` for a single time; compression and tension positive.
     displacement, horizontal_displacement : array_like, optional
         m, ``[time][place]``, positive upward and away from the crest.
     settlement : array_like, optional
         m, ``[time]``, positive downward.
     volume : array_like, optional
-        Weights ``[place]``; all alike where left out.
+        Weights ``[place]``; equal by default.
     distance : array_like, optional
-        m from the crest of the load ``[place]``, where places are in a plane; of ``mandel`` from the middle of the slab to
+        m from the crest of the load ``[place]``, if places are in a plane; for ``mandel`` from the middle of the slab to
         its drained side.
     sample : {"points", "centres", "nodes"}
         The kind of places.
     reference : str, optional
-        The one reference to compare with.
+        The only reference to compare with.
     **material
         As in :func:`exact`.
 
     Raises
     ------
     ValueError
-        Where shapes do not fit, a number is not finite, or the problem refuses an input.
+        If shapes do not match, a number is not finite, or the problem refuses an input.
     """
     if data is not None:
         found = score_files(scene, data, mapping=mapping, reference=reference, **material)
         if len(found) != 1:
-            raise ValueError(f"the data hold {len(found)} results: score them by `score_files`")
+            raise ValueError(f"the data hold {len(found)} results: score them with `score_files`")
         return found[0]
     if mapping is not None:
         raise ValueError("`mapping` says what `data` mean: arrays are in SI already")
@@ -330,7 +330,7 @@ def score(
 def case(
     scene: str, cells: int, time_factor: Optional[Numbers] = None, **material: Union[float, str]
 ) -> Dict[str, Any]:
-    """What a solver has to solve, as the ``case.json`` of attached solvers: geometry, load, soil, times in s, a time step.
+    """What a solver must solve, as in the ``case.json`` of attached solvers: geometry, load, soil, times in s, a time step.
 
     Parameters
     ----------
@@ -363,7 +363,7 @@ def score_files(
     reference: Optional[str] = None,
     **material: Union[float, str],
 ) -> List[Score]:
-    """Compare files of another program with the references of a scene: one score per mesh.
+    """Compare files of another program with the references of a benchmark problem: one score per mesh.
 
     Parameters
     ----------
@@ -378,9 +378,9 @@ def score_files(
         A mapping as a dictionary of its tables, or its file, which overrides the preset key by key:
         ``{"columns": {"p": "pore"}, "units": {"stress": "kPa"}}``.
     time_step : float, optional
-        Seconds from one numbered step to the next, where file names have the number of the step.
+        Seconds from one numbered step to the next, if file names contain a step number.
     cells : sequence of int, optional
-        Cells over the height of each result, where the files do not show them: each table is then a result of its own, and
+        Cells over the height of each result, if the files do not show them: each table is then a separate result, and
         ``series`` of each score has orders and classes over the meshes.
     reference, **material
         As in :func:`score`.
@@ -388,7 +388,7 @@ def score_files(
     Raises
     ------
     ValueError
-        Where a file cannot be read or does not fit, with its name.
+        If a file cannot be read or does not match, with its name.
     """
     inputs = _inputs(material)
     counts = [int(count) for count in cells] if cells is not None else []
@@ -422,13 +422,13 @@ class Convergence:
     """Class: asymptotic, pre-asymptotic, floor-limited, oscillatory, divergent, superconvergent, exact, contaminated,
     locked or not-evaluable."""
     order: Optional[float]
-    """Order on the finest three levels, where the class gives it a meaning."""
+    """Order on the finest three levels, if the class gives it a meaning."""
     reason: str
     """A sentence with the numbers that decided."""
     advice: Optional[str]
-    """What to change, where there is something to say."""
+    """What to change, if anything."""
     floor: Optional[float]
-    """Height of the floor of a floor-limited series, in the unit of the errors."""
+    """Height of the plateau of a floor-limited series, in the unit of the errors."""
     sizes: List[float] = field(repr=False)
     """Sizes from coarse to fine."""
     errors: List[float] = field(repr=False)
@@ -441,7 +441,7 @@ def convergence(sizes: Numbers, errors: Numbers, formal_order: Optional[float] =
     """Class and order of ``errors`` over the ``sizes`` of their levels (``[level]`` each, in any order).
 
     Signed errors of a single number, like a settlement, are distinguished from norms by their signs. ``formal_order`` is the
-    order that the method should have, where that is known.
+    order that the method should have, if known.
 
     >>> convergence([0.1, 0.05, 0.025], [4e-2, 1e-2, 2.5e-3]).kind
     'asymptotic'
