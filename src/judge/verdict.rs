@@ -272,8 +272,7 @@ fn floor_found(band: FloorBand, series: &ErrorSeries, formal: Option<f64>, found
     }
     let levels = series.levels().len();
     if found.floor.is_none() && levels < FLOOR_LEVELS {
-        let reason =
-            format!("no error plateau to judge: {levels} levels cannot tell one from none; add a level");
+        let reason = format!("no error plateau to judge: {levels} levels cannot show one; add a level");
         return Check::failed("floor", reason);
     }
     // A floor may bend the series without governing it yet.

@@ -106,7 +106,7 @@ fn measures(records: &[Record]) -> Option<Table> {
         })
     });
     let header = "case | measure | > T_v | > found | > exact | > error";
-    let table = Table::of("Measures beside the errors", columns(header), rows)
+    let table = Table::of("Measures other than errors", columns(header), rows)
         .file("measures")
         .note("the worst output of each run; `T_v` is empty where a measure covers the whole run")
         .note(

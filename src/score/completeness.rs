@@ -224,10 +224,10 @@ impl Whole<'_> {
             let lines = coverage::lines(&state.initial_height, self.parameters.height);
             Some(match coverage::open_end(&lines, self.parameters.height, are_nodes)? {
                 End::Top => {
-                    format!("no sample lies on {top}: the nodes have no row there, and one on {base}")
+                    format!("no sample lies on {top}: the nodes have no row there, but one on {base}")
                 }
                 End::Bottom => {
-                    format!("no sample lies on {bottom}: the nodes have no row there, and one on {surface}")
+                    format!("no sample lies on {bottom}: the nodes have no row there, but one on {surface}")
                 }
                 End::Both => format!("no sample lies on {top} or on {bottom}: the nodes have no row there"),
             })

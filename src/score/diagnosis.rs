@@ -165,7 +165,8 @@ impl Scene<'_> {
             if let Some(content) = structure::content(column, &whole).filter(|_| are_all) {
                 told.causes.push(content);
             } else if is_world && structure::is_told(column) {
-                told.causes.push(format!("your {} does not match that: it is wrong by itself", column.name));
+                told.causes
+                    .push(format!("your {} does not match that: it is wrong in its own right", column.name));
             } else if structure::is_told(column) {
                 told.places.extend(structure::place(column, &whole));
             }
@@ -197,11 +198,8 @@ impl Scene<'_> {
         }
         let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
         let (who, are) = (who(&names, "your"), if names.len() == 1 { "is" } else { "are" });
-        let alone = format!(
-            "{who} {are} right at t = {} s and wrong at t = {} s alone",
-            times(&right),
-            times(&wrong)
-        );
+        let alone =
+            format!("{who} {are} right at t = {} s and wrong only at t = {} s", times(&right), times(&wrong));
         let run = there.causes.iter().any(|cause| cause.contains("× the time"));
         let run = if run { "; are these outputs of another run?" } else { "" };
         if there.causes.is_empty() {

@@ -144,7 +144,7 @@ fn three_levels_have_no_floor_to_judge() {
     let floor = SeriesDemand { floor: Some(FloorBand { above: 0.0, below: 1.0 }), ..SeriesDemand::default() };
     let levels = series(|h| h * h).levels().to_vec();
     let three = verdict(&floor, &ErrorSeries::new(levels[..3].to_vec()));
-    assert!(!three.pass && three.reason.contains("3 levels cannot tell one from none"), "{three:?}");
+    assert!(!three.pass && three.reason.contains("3 levels cannot show one"), "{three:?}");
     assert!(verdict(&floor, &ErrorSeries::new(levels[..4].to_vec())).pass);
 }
 
@@ -350,7 +350,7 @@ fn a_floor_an_oscillation_and_an_uncertainty_are_told_with_their_bounds() {
     }
     let levels = series(|h| h * h).levels().to_vec();
     let three = ErrorSeries::new(levels[..3].to_vec());
-    let few = "no error plateau to judge: 3 levels cannot tell one from none; add a level";
+    let few = "no error plateau to judge: 3 levels cannot show one; add a level";
     assert_eq!(last(&floor(0.0, 1.0), &three, &Beside::default()), (false, few.to_owned()));
     let grows = last(&floor(0.0, 1.0), &series(|h| 1.0 / h), &Beside::default());
     assert_eq!(grows, (false, "no error plateau to judge: the series is divergent".to_owned()));

@@ -178,7 +178,7 @@ impl Store {
     fn plain_frame(&mut self, wanted: Wanted) -> Result<Frame, String> {
         if self.sets.len() > MOST_OF_A_STATE {
             return Err(format!(
-                "it has more than {MOST_OF_A_STATE} data sets: name them by an XDMF beside it"
+                "it has more than {MOST_OF_A_STATE} data sets: name them with an XDMF beside it"
             ));
         }
         let mut frame = Frame::default();

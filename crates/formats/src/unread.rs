@@ -40,8 +40,8 @@ const NAMED: [(&[u8], &str); 30] = [
 ];
 /// What stands in an archive of tar, and where.
 const TAR: (usize, &[u8]) = (257, b"ustar");
-const CLASSIC: &str = "it is classic netCDF (of Exodus II, too), which is not read: export VTU or CSV, or turn it into \
-                       netCDF-4 by `nccopy -k nc4 FILE NEW`";
+const CLASSIC: &str = "it is classic netCDF (of Exodus II, too), which is not read: export VTU or CSV, or \
+                       convert it to netCDF-4 with `nccopy -k nc4 FILE NEW`";
 const TECPLOT: &str = "it is a Tecplot file, which is not read: export VTU or CSV";
 const ADIOS2: &str = "it is an ADIOS2 file, which is not read: write XDMF (dolfinx.io.XDMFFile) or VTU";
 const PICKLE: &str = "it is a pickled object, which is a program and never opened: write NPZ or CSV";

@@ -128,7 +128,7 @@ fn answer_table(findings: &RaceFindings) -> Table {
     });
     let heads = "group | read | method | > reaches 1 % | > share | > interval | > within twice the cheapest | > most work, of any group | > methods not told apart | \
                  each output | half, twice the budget | 0.5, 2, 5 % | read the other way";
-    Table::of("The methods to take, and where that holds", columns(heads), rows).note(
+    Table::of("The methods to use, and where that holds", columns(heads), rows).note(
         "share: families of problems have equal weight; the method with the largest sum of both shares, and \
          those within 0.03 of it; interval: nine tenths of the shares when problems are resampled; not told \
          apart: intervals of both shares overlap",

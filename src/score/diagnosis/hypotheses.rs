@@ -241,7 +241,8 @@ pub const READINGS: &[Row] = &[
         |x, constant| Some(x.beside(|place| x.weight() * x.depth(place) + constant, true))).fitted(Number::Constant),
     row("constant", P, &[], "differs from the exact one by a constant of {} Pa", "is a constant of {} Pa left in?",
         |x, constant| Some(x.beside(|_| constant, true))).fitted(Number::Constant),
-    row("earlier stage", UP, &[TwoOutputs], "differs from the exact one by the same at all times, {} m at the top",
+    row("earlier stage", UP, &[TwoOutputs], "differs from the exact one by the same amount at all times, {} \
+         m at the top",
         "is the displacement of an earlier stage, such as self-weight, left in?",
         |x, top| Some(x.beside(|place| top * x.column.heights[place] / x.given.parameters.height, true))).fitted(Number::Slope),
     row("later moment", MOVED, &[AnyTime, TwoOutputs], "matches the exact one less that of {} s",
@@ -496,7 +497,7 @@ fn clocks(given: &Given<'_>) -> Vec<(f64, String)> {
     // With a porosity of a half both mistakes look alike.
     let [divided, multiplied] = if (n - 0.5).abs() < 0.01 {
         [
-            "is k twice too large, or divided by the porosity?",
+            "is k twice as large, or divided by the porosity?",
             "is k half as large, or multiplied by the porosity?",
         ]
     } else {

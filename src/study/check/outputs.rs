@@ -90,7 +90,7 @@ impl Checker<'_> {
             let help = if factor > 0.0 && factor < 1.0 {
                 format!("it is too early for any step: use 0, or {LEAST_TIME_FACTOR:e} and later")
             } else {
-                "T_v = c_v t/H² lies between 0 and 100; the column is consolidated at 2".to_owned()
+                "T_v = c_v t/H² lies between 0 and 100; at 2 the column is consolidated".to_owned()
             };
             let is_short = (1e-6..1e16).contains(&factor.abs());
             let size = if is_short { factor.to_string() } else { format!("{factor:?}") };
@@ -168,7 +168,7 @@ impl Checker<'_> {
             (Some(_), Some(time)) => {
                 self.complain(
                     time.span(),
-                    "the expectation names a time beside a time factor",
+                    "the expectation names both a time and a time factor",
                     "name one of them",
                 );
                 return None;
@@ -314,7 +314,7 @@ mod tests {
                 "times = ['1 day']",
                 "",
                 expect("time = '1 day'\ntime_factor = 0.1"),
-                "names a time beside a time factor",
+                "names both a time and a time factor",
             ),
             ("times = ['1 day']", "", expect(""), "names no time factor; add `time_factor = 0.1`, or a time"),
             (

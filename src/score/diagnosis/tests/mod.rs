@@ -358,7 +358,7 @@ fn with_a_porosity_of_a_half_a_factor_of_two_has_both_causes() {
     let mut column = ColumnParameters::default();
     column.soil.porosity = 0.5;
     for (factor, words) in [
-        (2.0, "is k twice too large, or divided by the porosity?"),
+        (2.0, "is k twice as large, or divided by the porosity?"),
         (0.5, "is k half as large, or multiplied by the porosity?"),
     ] {
         let states = states(&TIMES.map(|time| factor * time), |time| time / factor, 1e-3);
