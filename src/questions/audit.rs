@@ -353,8 +353,8 @@ mod tests {
         let found = ask(&results).expect("sound").expect("an audit");
         assert_eq!(
             found.sentence().expect("a sentence"),
-            "On 4 cells 0 of 4 pairings of law and continuity give Xie & Leo's settlement within 1 % at every time. What the \
-             paper prints is off by −100.0 % at T_v = 1."
+            "On 4 cells, 0 of 4 pairings of law and continuity reproduce Xie & Leo's settlement within 1 % \
+             at every time. The equations as printed in the paper are off by −100.0 % at T_v = 1."
         );
         records.retain(|record| law_and_continuity(&record.case) == PRINTED);
         let alone = ask(&[StudyResults::new(&study, &records, Tier::Full)]);

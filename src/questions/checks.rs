@@ -186,13 +186,13 @@ mod tests {
         let last: Vec<&Cell> = table.rows.iter().rev().take(3).map(|row| &row[1]).collect();
         assert_eq!(last, [&Cell::Error(0.007), &Cell::Error(0.05), &Cell::Error(0.3)]);
         let judged = table.rows.iter().filter(|row| row[2].show().starts_with('✓')).count();
-        assert_eq!(told, format!("In 2 runs {judged} of {judged} checks are within their bounds."));
+        assert_eq!(told, format!("In 2 runs, {judged} of {judged} checks are within bounds."));
         for value in [f64::NEG_INFINITY, f64::NAN, -0.5] {
             records[2].balance[0].solid_mass_drift = value;
             let (told, found) = answer(&records);
             let held = judged - 1;
-            let named = "Not: `mass of solids, drift`.";
-            assert_eq!(told, format!("In 2 runs {held} of {judged} checks are within their bounds. {named}"));
+            let named = "Out of bounds: `mass of solids, drift`.";
+            assert_eq!(told, format!("In 2 runs, {held} of {judged} checks are within bounds. {named}"));
             let row = found.tables()[0].rows.iter().find(|row| row[2].show().starts_with('✗'));
             assert_eq!(row.expect("a failure")[1].show(), Cell::Error(value.abs()).show());
         }

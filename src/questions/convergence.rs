@@ -235,8 +235,8 @@ mod tests {
         let found = ask(&results).expect("sound cases").expect("three methods");
         assert_eq!(found.studies, ["s"]);
         let told = "`GC-SRI-patch` converges to Terzaghi's solution with compressible water at T_v = 0.1: order 2.00 in the pore \
-                    pressure, order 2.00 in the effective stress, order 2.00 in the settlement; its pore pressure is off by \
-                    40.0 % on 20 cells.";
+                    pressure, order 2.00 in the effective stress, order 2.00 in the settlement; the error \
+                    of the pore pressure is 40.0 % on 20 cells.";
         assert_eq!(found.sentence().expect("a sentence"), told);
         let tables = found.tables();
         let shown: Vec<String> = tables[0].rows.iter().step_by(3).map(|row| row[0].show()).collect();

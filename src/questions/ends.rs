@@ -142,7 +142,7 @@ mod tests {
             assert_eq!(told, wanted);
         }
         let found = ask(&[StudyResults::new(&study, &records, Tier::Full)]).expect("it expects ends");
-        let told = "8 of 9 cases reached the last output, 2 of them with an error as large as the answer.";
+        let told = "8 of 9 cases reached the last output, 2 of them with an error as large as the solution.";
         assert_eq!(found.sentence().expect("a sentence"), told);
     }
 }

@@ -70,14 +70,14 @@ mod tests {
             let finding = (EXPECTED.ask)(&[one]).expect("sound cases").expect("an answer");
             finding.sentence().expect("a sentence")
         };
-        assert_eq!(told("met", &[0.9, 0.8], 0), "**2 of 2 expectations met** in 1 study of 1 run.");
+        assert_eq!(told("met", &[0.9, 0.8], 0), "**2 of 2 expectations met** in 1 study with 1 run.");
         assert_eq!(
             told("unmet", &[0.9, 1e-9], 0),
-            "**1 of 2 expectations met** in 1 study of 1 run. Not as expected: `unmet`."
+            "**1 of 2 expectations met** in 1 study with 1 run. Not as expected: `unmet`."
         );
         assert_eq!(
             told("bare", &[], 2),
-            "**No expectations** in 1 study of 1 run. 2 checks of runs fail. Not as expected: `bare`."
+            "**No expectations** in 1 study with 1 run. 2 checks of runs fail. Not as expected: `bare`."
         );
     }
 }

@@ -141,8 +141,9 @@ mod tests {
         ] {
             let (caption, curves) = told(runs);
             assert!(
-                caption
-                    .contains(&format!("on {cells} cells under the plate, kept undrained by `total-stress`")),
+                caption.contains(&format!(
+                    "on {cells} cells under the plate, with the undrained model `total-stress`"
+                )),
                 "{caption}"
             );
             let wanted = methods.iter().chain([&"2 + π"]).map(|name| ((*name).to_owned(), f64::from(cells)));

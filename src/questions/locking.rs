@@ -203,7 +203,8 @@ mod tests {
         assert_eq!(shown, wanted, "those that keep it first");
         assert_eq!(
             found.sentence().expect("a sentence"),
-            "1 of 6 methods on 4 cells keeps displacement and pressure within 10 % up to ν = 0.49 at T_v = 0.1: `GIMP`."
+            "On 4 cells, 1 of 6 methods keeps displacement and pressure within 10 % up to ν = 0.49 at T_v = \
+             0.1: `GIMP`."
         );
     }
 

@@ -306,9 +306,7 @@ mod tests {
             "{told}"
         );
         assert!(
-            told.contains(
-                "at 200 kPa the settlement ends −6.9 % and the pressure is up to 41 % off Xie & Leo's"
-            ),
+            told.contains("at 200 kPa their final settlement is −6.9 % and their pressure up to 41 % off"),
             "{told}"
         );
         assert_eq!(found.studies, ["most", "large"]);

@@ -336,7 +336,7 @@ mod tests {
         let answer = found(&records).expect("three methods");
         assert_eq!(
             answer.sentence().expect("a sentence"),
-            "Pressures over the depth on 10 cells, beside theory, of 3 methods: `GC-SRI-patch`, `GIMP-SRI`, `MPM`."
+            "Pressure over depth on 10 cells, compared with theory, for 3 methods: `GC-SRI-patch`, `GIMP-SRI`, `MPM`."
         );
         let [Block::Figures(figures)] = &answer.parts[..] else { panic!("{answer:?}") };
         let names: Vec<&str> = figures.iter().map(|figure| figure.name.as_str()).collect();

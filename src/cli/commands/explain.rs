@@ -205,7 +205,7 @@ mod tests {
                 .map(|planned| format!("\n  {} mine/{}", planned.case.hash(), planned.case.label()))
                 .collect();
             let told = format!(
-                "`MPM` describes {count} cases; give the first digits of a hash:{}{more}",
+                "`MPM` matches {count} cases; give the first digits of a hash:{}{more}",
                 lines.concat()
             );
             assert_eq!(found(&studies, "MPM"), Err((Exit::Usage, told)));

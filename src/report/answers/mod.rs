@@ -245,7 +245,7 @@ mod tests {
         let [Block::Paragraph(told), Block::Table(table), ..] = &section.blocks[..] else {
             panic!("{section:?}")
         };
-        assert_eq!(told, "Against the golden values 2 studies changed, of which 1 got worse.");
+        assert_eq!(told, "Compared with the golden values, 2 studies changed; 1 of them got worse.");
         assert_eq!(table.title, "the golden values → this report");
         let trends: Vec<_> = table.rows.iter().map(|row| [row[0].show(), row[1].show()]).collect();
         assert_eq!(trends, [["worse", "✗ regressed"], ["better", "✓ improved"]]);

@@ -122,7 +122,7 @@ pub fn content(column: &Column, given: &Given<'_>) -> Option<String> {
             true if !given.moves() => {
                 " Or has everything drained before the first time (is k, or are the times, far too large)?"
             }
-            false if !given.is_stressed() => " Or does nothing drain?",
+            false if !given.is_stressed() => " Or is the surface closed, so that nothing drains?",
             _ => "",
         };
         return Some(format!("your {name} is 0 everywhere: {another}{or}"));

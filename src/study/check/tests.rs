@@ -50,9 +50,9 @@ mod point_sets {
         let growing = of("xie-leo", "column.loading_time = 20.0");
         let explicit = "integrator = [\"explicit\"]\n";
         for (scene, more, why) in [
-            (of("layered", ""), format!("{explicit}sets = [2]"), "take one soil"),
-            (growing.clone(), format!("{explicit}sets = [2]"), "take one soil"),
-            (growing.clone(), "conductivity_mean = [\"chord\"]".to_owned(), "compression of one soil"),
+            (of("layered", ""), format!("{explicit}sets = [2]"), "need a single soil"),
+            (growing.clone(), format!("{explicit}sets = [2]"), "need a single soil"),
+            (growing.clone(), "conductivity_mean = [\"chord\"]".to_owned(), "compression of a single soil"),
             (growing.replace("20.0", "20.0\ncolumn.self_weight = true"), String::new(), "has no weight here"),
             (growing.replace("20.0", "20.0\ncolumn.strain = 0.2"), String::new(), "have different strains"),
             (of("xie-leo", ""), String::new(), "give a loading time"),
