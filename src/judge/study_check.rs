@@ -272,7 +272,7 @@ impl StudyCheck {
     /// none where there are no such cases.
     pub fn told_inputs(&self) -> Option<String> {
         let first = self.other_inputs.first()?;
-        let (is, their) = if self.other_inputs.len() == 1 { ("is", "its") } else { ("are", "their") };
+        let (has, their) = if self.other_inputs.len() == 1 { ("has", "its") } else { ("have", "their") };
         let which = match self.input_changes.as_slice() {
             [] => "`git diff` of the study shows which".to_owned(),
             changes => {

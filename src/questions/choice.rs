@@ -24,7 +24,7 @@ use std::cmp::Reverse;
 /// Which method should I take?
 pub static CHOICE: Question = Question {
     id: "choice",
-    heading: "Which method should I take?",
+    heading: "Which method should I use?",
     template: include_str!("choice.md"),
     places: &[Place::Report],
     ask,
@@ -484,7 +484,7 @@ pub fn family_table(facts: &Facts, read_out: ReadOut) -> Table {
         rows,
     )
     .file(format!("families-{}", read_out.name()))
-    .note("behind +: others that are as good; ms: the least work, easiest to hardest problem")
+    .note("+: number of other methods that are as good; ms: the least work, easiest to hardest problem")
 }
 
 /// Methods whose cost stands beside the cheapest.
@@ -524,8 +524,10 @@ pub fn practice(findings: &RaceFindings, read_out: ReadOut) -> Table {
         "group | problem | cheapest | > cells | step | > work [ms] | > {} | > {} | > {}",
         BESIDE[0], BESIDE[1], BESIDE[2]
     );
-    Table::of(format!("What 1 % takes, read {}", places_of(read_out)), columns(&heads), rows)
-        .note("last columns: work over that of the cheapest, or why 1 % is not reached; where the mesh follows, their TL- forms")
+    Table::of(format!("What 1 % takes, read {}", places_of(read_out)), columns(&heads), rows).note(
+        "last columns: work relative to the cheapest, or why 1 % is not reached; where the mesh \
+               follows the soil, their TL- forms",
+    )
 }
 
 fn regret(situation: &Situation, name: &str, terms: &Terms, least: Option<f64>) -> Cell {

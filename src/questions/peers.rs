@@ -17,7 +17,7 @@ use std::sync::LazyLock;
 /// What do other programs reach?
 pub static PEERS: Question = Question {
     id: "peers",
-    heading: "What do other programs reach?",
+    heading: "How accurate are other programs?",
     template: include_str!("peers.md"),
     places: &[Place::Study, Place::Report],
     ask,

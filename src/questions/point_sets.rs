@@ -150,7 +150,7 @@ fn table(rows: &[Row]) -> Table {
         ]
     });
     let header = "study | method | > pairs | > error ratio: least | > median | > largest | > work ratio";
-    Table::of("Two sets of points over one", columns(header), cells)
+    Table::of("Two point sets relative to one", columns(header), cells)
         .file("point-sets")
         .shown(SHOWN_ROWS)
         .note(format!("error of the pressure at the points, at every output; work: {COUNTED_WORK}"))
@@ -199,8 +199,9 @@ mod tests {
         assert_eq!(
             answer.sentence().expect("a sentence"),
             format!(
-                "4 pairs of runs differ in the point sets alone: with two sets the error of the pressure is 0.50 to 4.00 times \
-             that with one. 1 single-point run and 1 double-point run ended before the last output; in 0 double-point runs \
+                "4 pairs of runs differ only in the number of point sets: with two sets the pressure error \
+                 is 0.50 to 4.00 times that with one. 1 single-point run and 1 double-point run ended \
+                 before the last output; in 0 double-point runs \
              the pressure exceeded what the load can cause. Two sets take {least} to {most} times the work."
             )
         );

@@ -21,7 +21,7 @@ pub struct Refusal {
     pub help: &'static str,
 }
 
-const OWN_BLOCK: &str = "give each integrator a [[sweep]] block of its own, or zip both axes with `path`";
+const OWN_BLOCK: &str = "give each integrator its own [[sweep]] block, or zip both axes with `path`";
 
 impl Case {
     /// Every reason why the case cannot be.
@@ -30,8 +30,8 @@ impl Case {
         let Some(setup) = case.setup() else {
             let refusal = (case.task == Task::Stability).then_some(Refusal {
                 key: "task",
-                why: "the critical step of an attached solver cannot be searched",
-                help: "name methods of this program alone, or leave `task` out",
+                why: "the critical step of an attached solver cannot be determined",
+                help: "name only methods of this program, or leave `task` out",
             });
             return refusal.into_iter().collect::<Vec<_>>().into_iter();
         };
@@ -65,10 +65,10 @@ impl Case {
 /// Steps, integrators and formulations that are not in the lists of scene and integrator: of each the first list that lacks it.
 fn choices_outside_lists(scene: &Scene, it: &Setup<'_>) -> Vec<Refusal> {
     let Setup { integrator, formulation, .. } = it;
-    let by_integrator = "give each integrator a [[sweep]] block of its own, or leave `formulation` out";
+    let by_integrator = "give each integrator its own [[sweep]] block, or leave `formulation` out";
     let searched = (it.is_search && *integrator != IntegratorKind::Explicit).then_some((
-        "the critical step is searched with explicit steps",
-        "take `integrator = [\"explicit\"]`, or leave the key out",
+        "the critical step is determined with explicit steps",
+        "use `integrator = [\"explicit\"]`, or leave the key out",
     ));
     let [integrators, formulations] = [
         (!scene.integrators.has(integrator)).then_some((scene.integrators.why, scene.integrators.instead)),
@@ -101,15 +101,15 @@ static LIMITS: &[Limit] = &[
     Limit {
         key: "affine",
         refuses: |it| it.settings.affine && !moves_points_explicitly(it),
-        why: "APIC needs points that move by explicit steps, in one set: a case of this sweep has none",
-        instead: "leave `affine` out there, or give those methods and integrators a [[sweep]] block of their own",
+        why: "APIC needs a single set of points that move by explicit steps: a case of this sweep has none",
+        instead: "leave `affine` out there, or give those methods and integrators their own [[sweep]] block",
     },
     Limit {
         key: "stress_slopes",
         refuses: |it| it.settings.stress_slopes && !moves_domains_explicitly(it),
-        why: "stress slopes need GIMP domains that follow points which move by explicit steps, in one set: a case \
-              of this sweep has no such domains",
-        instead: "leave `stress_slopes` out there, or give those methods and integrators a [[sweep]] block of their own",
+        why: "stress slopes need GIMP domains of a single set of points that move by explicit steps: a case \
+              of this sweep has none",
+        instead: "leave `stress_slopes` out there, or give those methods and integrators their own [[sweep]] block",
     },
     Limit {
         key: "time_step",
@@ -124,21 +124,21 @@ static LIMITS: &[Limit] = &[
     Limit {
         key: "offset",
         refuses: |it| it.column.self_weight && it.column.points.offset != 0.0,
-        why: "domains shifted off their lattice do not integrate a weight exactly: the column would flow from the \
-              start",
-        instead: "leave `offset` out, or take `self_weight = false`",
+        why: "domains shifted off their lattice do not integrate self-weight exactly: the column would flow \
+              from the start",
+        instead: "leave `offset` out, or use `self_weight = false`",
     },
     Limit {
         key: "alternating",
         refuses: |it| it.column.points.alternating && it.column.dimensions > 1,
-        why: "cells with unequal numbers of points are those of a column in one dimension",
-        instead: "leave `alternating` out, or take a column with `dimensions = 1`",
+        why: "cells can have unequal numbers of points only in a one-dimensional column",
+        instead: "leave `alternating` out, or use a column with `dimensions = 1`",
     },
     Limit {
         key: "conductivity_mean",
         refuses: |it| it.soil.conductivity_mean == ConductivityMean::Chord && !it.column.soils.is_empty(),
-        why: "the chord mean is taken along the compression of one soil, and the column has layers",
-        instead: "take `conductivity_mean = \"points\"`",
+        why: "the chord mean is taken along the compression of a single soil, but the column has layers",
+        instead: "use `conductivity_mean = \"points\"`",
     },
 ];
 
@@ -150,65 +150,65 @@ static TWO_SETS: &[Missed] = &[
     (
         |_, it| it.integrator != IntegratorKind::Explicit,
         "double-point MPM is integrated explicitly only",
-        "take the integrator \"explicit\", or `sets = 1`",
+        "use the integrator \"explicit\", or `sets = 1`",
     ),
     (
         |_, it| it.configuration == Configuration::Total,
-        "shape functions on the initial configuration stay with the skeleton, and a second point set does not",
-        "take a method without the prefix TL-, or `sets = 1`",
+        "shape functions on the initial configuration stay with the skeleton, but a second point set does not",
+        "use a method without the prefix TL-, or `sets = 1`",
     ),
     (
         |_, it| it.method.has_projection(),
         "the projection needs pressures at the points of the skeleton",
-        "take the method \"VP\", or `sets = 1`",
+        "use the method \"VP\", or `sets = 1`",
     ),
     (
         |_, it| it.method.memory == Memory::Cells && it.configuration != Configuration::Frozen,
-        "cell averages need points that carry both phases, and here are two point sets",
-        "take a method without the suffix -cells, or `sets = 1`",
+        "cell averages need points that carry both phases, but there are two point sets",
+        "use a method without the suffix -cells, or `sets = 1`",
     ),
     (
         |_, it| {
             it.configuration == Configuration::Updated
                 && !matches!(it.method.basis, Basis::Cpgimp | Basis::Cpdi)
         },
-        "the domains of water points follow the water where points move, and the domains of this basis do not",
-        "take the basis \"cpgimp\" or \"cpdi\", or `sets = 1`",
+        "where points move, the domains of water points follow the water, but the domains of this basis do not",
+        "use the basis \"cpgimp\" or \"cpdi\", or `sets = 1`",
     ),
     (
         |scene, _| scene.body == Body::Slab,
-        "a rigid plate is tied to one point set",
-        "take another scene, or `sets = 1`",
+        "a rigid plate needs a single point set",
+        "use another problem, or `sets = 1`",
     ),
     (
         |scene, _| scene.load == LoadKind::Pushed,
         "the water under a footing stays with its soil",
-        "take another scene, or `sets = 1`",
+        "use another problem, or `sets = 1`",
     ),
     (
         |scene, it| scene.question == Question::Layers && scene.takes("soils") || !it.column.soils.is_empty(),
-        "two point sets take one soil",
-        "take another scene, or `sets = 1`",
+        "two point sets need a single soil",
+        "use another problem, or `sets = 1`",
     ),
     (
         |_, it| it.column.self_weight,
         "the weight of a column needs points that carry both phases",
-        "leave `self_weight` out, or take `sets = 1`",
+        "leave `self_weight` out, or use `sets = 1`",
     ),
     (
         |_, it| it.column.drainage == Drainage::Both,
-        "water points leave through the surface alone",
-        "leave `drainage` out, or take `sets = 1`",
+        "water points leave only through the surface",
+        "leave `drainage` out, or use `sets = 1`",
     ),
     (
         |_, it| it.soil.conductivity_mean == ConductivityMean::Chord,
         "the chord mean is taken over points that carry both phases",
-        "take `conductivity_mean = \"points\"`, or `sets = 1`",
+        "use `conductivity_mean = \"points\"`, or `sets = 1`",
     ),
     (
         |_, it| it.column.points.jitter != 0.0 || it.column.points.offset != 0.0,
         "shifted domains of the water do not end where the soil does",
-        "leave `offset` and `jitter` out, or take `sets = 1`",
+        "leave `offset` and `jitter` out, or use `sets = 1`",
     ),
 ];
 
@@ -278,26 +278,26 @@ mod tests {
 
     /// What is said of the cases of the table below that are refused, by their rows.
     const ALL_REFUSALS: &str = r#"
-0 task: the critical step of an attached solver cannot be searched: name methods of this program alone, or leave `task` out
+0 task: the critical step of an attached solver cannot be determined: name only methods of this program, or leave `task` out
 1 time_step: the critical step with APIC or stress slopes is not predicted: `stable` cannot be used: name the step: `time_step = [{ courant = 0.4 }]`, or in seconds
 2 time_step: the critical step with APIC or stress slopes is not predicted: `stable` cannot be used: name the step: `time_step = [{ courant = 0.4 }]`, or in seconds
-3 sets: the domains of water points follow the water where points move, and the domains of this basis do not: take the basis "cpgimp" or "cpdi", or `sets = 1`
-4 sets: the domains of water points follow the water where points move, and the domains of this basis do not: take the basis "cpgimp" or "cpdi", or `sets = 1`
-8 sets: the projection needs pressures at the points of the skeleton: take the method "VP", or `sets = 1`
-9 sets: cell averages need points that carry both phases, and here are two point sets: take a method without the suffix -cells, or `sets = 1`
-10 sets: the chord mean is taken over points that carry both phases: take `conductivity_mean = "points"`, or `sets = 1`
-11 sets: shifted domains of the water do not end where the soil does: leave `offset` and `jitter` out, or take `sets = 1`
-12 sets: shifted domains of the water do not end where the soil does: leave `offset` and `jitter` out, or take `sets = 1`
-14 sets: two point sets take one soil: take another scene, or `sets = 1`
-15 conductivity_mean: the chord mean is taken along the compression of one soil, and the column has layers: take `conductivity_mean = "points"`
-18 drag: explicit drag in a nearly impermeable soil needs steps below 1e-12 of those of the waves: take `drag = "implicit"`
-21 formulation: the quasi-static formulation leaves out the waves that this scene is about: take "v-w" or "u-p", or the scene "terzaghi"
-23 alternating: cells with unequal numbers of points are those of a column in one dimension: leave `alternating` out, or take a column with `dimensions = 1`
-25 cells: an odd number of cells under a footing: half of it is solved, and its middle lies on a node: take an even number
-26 plate_width: the layer ends under the footing: half of the footing lies on it: make `length` more than half of `plate_width`: 2.5 times `plate_width` is enough
-28 method: the composite gradient between domain ends has no volume of its own: total stress needs one: take another method, or `undrained = "two-phase"`
-31 integrator: the critical step is searched with explicit steps: take `integrator = ["explicit"]`, or leave the key out
-32 sets: water points leave through the surface alone: leave `drainage` out, or take `sets = 1`
+3 sets: where points move, the domains of water points follow the water, but the domains of this basis do not: use the basis "cpgimp" or "cpdi", or `sets = 1`
+4 sets: where points move, the domains of water points follow the water, but the domains of this basis do not: use the basis "cpgimp" or "cpdi", or `sets = 1`
+8 sets: the projection needs pressures at the points of the skeleton: use the method "VP", or `sets = 1`
+9 sets: cell averages need points that carry both phases, but there are two point sets: use a method without the suffix -cells, or `sets = 1`
+10 sets: the chord mean is taken over points that carry both phases: use `conductivity_mean = "points"`, or `sets = 1`
+11 sets: shifted domains of the water do not end where the soil does: leave `offset` and `jitter` out, or use `sets = 1`
+12 sets: shifted domains of the water do not end where the soil does: leave `offset` and `jitter` out, or use `sets = 1`
+14 sets: two point sets need a single soil: use another problem, or `sets = 1`
+15 conductivity_mean: the chord mean is taken along the compression of a single soil, but the column has layers: use `conductivity_mean = "points"`
+18 drag: explicit drag in a nearly impermeable soil needs steps below 1e-12 of the wave limit: use `drag = "implicit"`
+21 formulation: the quasi-static formulation neglects the waves that this problem is about: use "v-w" or "u-p", or the scene "terzaghi"
+23 alternating: cells can have unequal numbers of points only in a one-dimensional column: leave `alternating` out, or use a column with `dimensions = 1`
+25 cells: an odd number of cells under a footing: half of it is solved, and its middle lies on a node: use an even number
+26 plate_width: the layer ends under the footing: half of the footing must lie on it: make `length` more than half of `plate_width`: 2.5 times `plate_width` is enough
+28 method: the composite gradient between domain ends has no separate volumetric part, which total stress needs: use another method, or `undrained = "two-phase"`
+31 integrator: the critical step is determined with explicit steps: use `integrator = ["explicit"]`, or leave the key out
+32 sets: water points leave only through the surface: leave `drainage` out, or use `sets = 1`
 "#;
 
     #[test]

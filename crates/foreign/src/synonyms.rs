@@ -218,7 +218,7 @@ const DERIVED: &[(&[&str], &str)] = &[
     ),
     (
         &["end_time", "t_end", "final_time", "duration"],
-        "a run ends at its last output: `times` or `time_factors`",
+        "a run ends at its last output: set `times` or `time_factors`",
     ),
 ];
 
@@ -258,7 +258,7 @@ impl<'a> UnknownKey<'a> {
         let help = if let Some(new) = RENAMED.iter().find_map(|(old, new)| has(new).filter(|_| *old == name))
         {
             meant = Some(new);
-            format!("it is called `{new}` now")
+            format!("it is now called `{new}`")
         } else if has(read_as(name)).is_some() {
             format!("it is another name of `{}`: leave one of them out", read_as(name))
         } else {

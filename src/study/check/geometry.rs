@@ -134,7 +134,8 @@ impl Checker<'_> {
                 "self_weight",
                 seed.task == Task::Stability
                     && is("self_weight", |typed| matches!(typed, TypedInput::Flag(true))),
-                "a weight does not change the critical step: it is that of the weightless column".to_owned(),
+                "self-weight does not change the critical step: it is that of the weightless column"
+                    .to_owned(),
                 "leave `self_weight` out of a study of stability",
             ),
             (
@@ -142,7 +143,7 @@ impl Checker<'_> {
                 seed.scene.body != Body::Column
                     && is("dimensions", |typed| !matches!(typed, TypedInput::Count(2))),
                 format!("`{}` has two dimensions", seed.scene.name),
-                "leave the key out: the plate presses across the direction in which the water flows",
+                "leave the key out: the plate presses perpendicular to the flow of the water",
             ),
         ] {
             if let Some(place) = inputs.span(key).filter(|_| is_refused && seed.scene.takes(key)) {
@@ -210,7 +211,7 @@ impl Checker<'_> {
             {
                 let message = message.replace("{}", &number.to_string());
                 if self.purpose == Purpose::Theory {
-                    let help = format!("in a problem without dimensions it is right; else {help}");
+                    let help = format!("in a dimensionless problem it is right; otherwise {help}");
                     self.warn(&Diagnostic::at(typed.span(), message, help));
                 } else {
                     self.complain(typed.span(), message, help);
@@ -229,11 +230,11 @@ impl Checker<'_> {
         } else if has_load {
             (
                 "the column has a `load` and a `strain`".to_owned(),
-                "leave one of them out: the load follows from the strain",
+                "leave one of them out: each determines the other",
             )
         } else if !seed.scene.is_loaded() {
             (
-                format!("no load acts in the problem `{}`: it cannot strain it", seed.scene.name),
+                format!("no load acts in the problem `{}`, so it has no strain", seed.scene.name),
                 "leave `strain` out",
             )
         } else if **typed > 0.0 && **typed < 1.0 {
@@ -284,7 +285,7 @@ impl Checker<'_> {
                 soil.porosity
             ),
             format!(
-                "take a load below {} Pa, or instead of it a `strain` in [column] below {}",
+                "use a load below {} Pa, or instead of it a `strain` in [column] below {}",
                 short(load_of(soil.porosity, case)),
                 soil.porosity
             ),
@@ -342,9 +343,7 @@ impl Checker<'_> {
             let si = if unit == "mm" { "m" } else { "Pa" };
             self.warn(&Diagnostic::at(
                 span,
-                format!(
-                    "a number without a unit is in {si}: {typed} {si} is unusual beside the other inputs"
-                ),
+                format!("a number without a unit is in {si}: {typed} {si} is unusual for the other inputs"),
                 format!("did you mean \"{typed} {unit}\"? Write \"{typed} {si}\" if not"),
             ));
         }
@@ -366,8 +365,8 @@ impl Checker<'_> {
         let diagnostic = Diagnostic::at(
             place.unwrap_or_else(|| file.scene.span()),
             format!(
-                "the load strains the column by m_vl q = {strain:.2e}: this problem is small-strain theory, and real soil \
-                 departs from it by about that fraction"
+                "the load strains the column by m_vl q = {strain:.2e}: this problem uses small-strain \
+                 theory, from which real soil departs by about that fraction"
             ),
             "the errors are taken against small-strain theory; `xie-leo` is the problem at large strain",
         );
@@ -427,7 +426,7 @@ impl Checker<'_> {
         self.warn(&Diagnostic::at(
             file.scene.span(),
             message,
-            "its errors are those of slower waves; take a method without a projection, or more cells",
+            "its errors are those of slower waves; use a method without a projection, or more cells",
         ));
     }
 }

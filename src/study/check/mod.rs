@@ -280,9 +280,9 @@ impl Checker<'_> {
         if let Some(typed) = file.task.as_ref().filter(|_| is_prescribed) {
             self.complain(
                 typed.span(),
-                "the body forces of a manufactured solution hide what grows by itself: its critical step is predicted and \
-                 not observed",
-                "leave `task` out, or take another problem",
+                "the body forces of a manufactured solution hide what grows by itself: its critical step is \
+                 predicted, not observed",
+                "leave `task` out, or use another problem",
             );
         }
     }
@@ -383,7 +383,7 @@ impl Checker<'_> {
             GoldenRule::Within(tolerance) if !(0.0..=MOST_TOLERANCE).contains(&tolerance) => self.complain(
                 typed.span(),
                 format!("a tolerance of {tolerance} of golden values is not between 0 and {MOST_TOLERANCE}"),
-                "values that scatter by more have no golden ones: `golden = \"none\"`, and expectations",
+                "values that scatter more cannot be golden: use `golden = \"none\"` and expectations",
             ),
             _ => {}
         }
@@ -436,7 +436,7 @@ impl Checker<'_> {
             } else {
                 self.complain(
                     typed.span(),
-                    format!("the load of `{kind}` acts at once, and this column's grows"),
+                    format!("the load of `{kind}` is sudden, but this column's grows"),
                     format!("compare it with \"{}\"", of_problem[0]),
                 );
             }
