@@ -284,7 +284,7 @@ impl StudyCheck {
             }
         };
         Some(format!(
-            "{} {is} of other inputs than {their} golden values, like `{first}`: {which}",
+            "{} {has} other inputs than {their} golden values, like `{first}`: {which}",
             count_of(self.other_inputs.len(), "case", "cases")
         ))
     }

@@ -139,7 +139,7 @@ fn files_whose_times_are_listed_come_in_the_order_of_their_numbers() {
         let mapping = Mapping::read(&source).expect("a mapping");
         let read = runs_of(&[names.map(at).to_vec()], &mapping, body).map_err(|error| error.to_string());
         assert_eq!(read.is_ok(), is_read, "{names:?} {read:?}");
-        assert!(read.map_or_else(|why| why.contains("a pattern in quotes"), |_| true));
+        assert!(read.map_or_else(|why| why.contains("a quoted pattern"), |_| true));
     }
 }
 
