@@ -75,7 +75,7 @@ pub fn write_streamed(
 ) -> Result<(), StoreError> {
     let folder = folder_of(path);
     fs::create_dir_all(folder).map_err(|source| StoreError::Io {
-        action: "make the folder",
+        action: "create the folder",
         path: folder.to_owned(),
         source,
     })?;
@@ -181,7 +181,7 @@ mod tests {
         // A file in the place of its folder.
         let below = path.join("b.json");
         let told = write_whole(&below, b"x").expect_err("refused").to_string();
-        assert!(told.starts_with(&format!("cannot make the folder {}: ", path.display())), "{told}");
+        assert!(told.starts_with(&format!("cannot create the folder {}: ", path.display())), "{told}");
         assert_eq!(folder_of(Path::new("a.json")), Path::new("."));
         assert_eq!(folder_of(Path::new("b/a.json")), Path::new("b"));
         assert_ne!(random_word(), random_word());

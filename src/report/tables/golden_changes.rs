@@ -17,7 +17,7 @@ pub(crate) fn summary(group: &DifferenceGroup) -> String {
         Change::Moved => "moved".to_owned(),
         Change::Missing => format!("{is} no longer measured"),
         Change::Extra => format!("{is} not in the golden file"),
-        Change::Smaller => "fell where others of the same case rose".to_owned(),
+        Change::Smaller => "fell where others of their case rose".to_owned(),
         Change::Stale => "improved: the golden values are stale".to_owned(),
     };
     let mut sentence = format!(
@@ -135,8 +135,8 @@ mod tests {
             (Change::Extra, "1 value is not in the golden file, in 1 case", "are not in the golden file"),
             (
                 Change::Smaller,
-                "1 value fell where others of the same case rose, in 1 case",
-                "fell where others of the same case rose",
+                "1 value fell where others of their case rose, in 1 case",
+                "fell where others of their case rose",
             ),
             (
                 Change::Stale,

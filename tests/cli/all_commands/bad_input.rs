@@ -290,7 +290,7 @@ fn files_that_cannot_be_read_are_named() {
         let told = refused_in(folder.path(), &[command, "nowhere.toml"]);
         assert_says(&told, &["nowhere.toml", "no such file"]);
         let told = refused_in(folder.path(), &[command, "."]);
-        assert_says(&told, &["the folder . has no study", "oedometer new"]);
+        assert_says(&told, &["the folder . contains no study", "oedometer new"]);
     }
     // A sound study beside a missing one: nothing of it is run.
     std::fs::write(folder.path().join("study.toml"), SOUND).expect("a file");

@@ -71,7 +71,7 @@ fn without_names_the_studies_of_this_project_are_taken_from_any_of_its_folders()
         );
     }
     let told = call(project.path(), &["check", "source"]);
-    assert!(told.code == 2 && told.err.contains("the folder source has no study"), "{}", told.err);
+    assert!(told.code == 2 && told.err.contains("the folder source contains no study"), "{}", told.err);
 }
 
 #[test]

@@ -196,7 +196,7 @@ fn one_case_can_be_explained_and_run_again() {
     assert_eq!(table_without_times(&at.join("out/short/short.csv")), before, "the table keeps the others");
     let several = call(at, &["explain", "cells=4", "short.toml"]);
     assert_eq!(several.code, 2);
-    assert!(several.err.contains("describes 2 cases"), "{}", several.err);
+    assert!(several.err.contains("matches 2 cases"), "{}", several.err);
     assert_eq!(call(at, &["explain", "cells=77", "short.toml"]).code, 4);
 }
 

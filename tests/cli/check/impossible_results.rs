@@ -167,7 +167,7 @@ fn no_error_is_held_against_a_theory_that_leaves_out_what_rules() {
     let reasons: Vec<&str> =
         ruled.references.iter().filter_map(|reference| reference.does_not_hold.as_deref()).collect();
     assert_eq!(reasons.len(), 2);
-    assert!(reasons[0].starts_with("`terzaghi` is quasi-static and does not hold"), "{reasons:?}");
+    assert!(reasons[0].starts_with("`terzaghi` is quasi-static and does not apply"), "{reasons:?}");
     assert_eq!(soundness::complaints(&ruled).len(), 2);
     // Without inertia in the equations it cannot rule, and a scene of waves is about it.
     for holds in [
@@ -210,7 +210,7 @@ fn numbers_that_no_run_can_go_on_from_are_refused_by_every_integrator() {
         for (set, said) in [
             ("material.hydraulic_conductivity=5e-324", "coefficient of consolidation"),
             ("material.hydraulic_conductivity=1e-310", "the critical time step"),
-            ("material.water_bulk_modulus=1e308", "coupling modulus"),
+            ("material.water_bulk_modulus=1e308", "Biot modulus"),
             ("material.youngs_modulus=1e308", "final settlement"),
             ("column.height=1e300", "time at a time factor of 1"),
             ("column.load=5e-324", "the load must be positive and finite, got 5e-324"),

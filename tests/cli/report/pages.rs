@@ -260,7 +260,7 @@ fn a_sweep_of_poisson_s_ratio_in_the_plane_says_who_locks_and_from_where() {
     let page = fs::read_to_string(folder.path().join("made/README.md")).expect("a page");
     let answer = page.split("## Which methods lock?").nth(1).expect(&page);
     assert!(
-        answer.contains("1 of 2 methods on 8 cells keeps displacement and pressure within 10 % up to ν = 0.4999 at T_v = 0.1: `GIMP-Bbar-patch`"),
+        answer.contains("On 8 cells, 1 of 2 methods keeps displacement and pressure within 10 % up to ν = 0.4999 at T_v = 0.1: `GIMP-Bbar-patch`"),
         "{answer}"
     );
     assert!(answer.contains("| `GIMP` | ✗ from ν = 0.25 |"), "{answer}");

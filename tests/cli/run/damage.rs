@@ -133,7 +133,7 @@ fn an_unwritable_folder_is_told_in_a_sentence() {
     fs::write(folder.path().join("out"), "a file where the folder should be").expect("a file");
     let (code, told) = run_in(folder.path(), &["run", "short.toml", "--out", "out"]);
     assert_eq!(code, 3, "{told}");
-    assert!(told.contains("cannot make the folder"), "{told}");
+    assert!(told.contains("cannot create the folder"), "{told}");
 }
 
 #[test]

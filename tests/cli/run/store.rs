@@ -241,7 +241,7 @@ fn an_empty_case_is_no_case() {
     for hash in ["", " "] {
         let told = call(folder.path(), &["run", "short.toml", "--case", hash]);
         assert_eq!(told.code, 2, "{}", told.err);
-        assert!(told.err.contains("`--case` names no case"), "{}", told.err);
+        assert!(told.err.contains("`--case` needs a hash"), "{}", told.err);
     }
     assert!(!folder.path().join("out").exists());
 }
@@ -480,7 +480,7 @@ fn the_first_result_that_cannot_be_kept_ends_the_run() {
     let told = call(folder.path(), &["run", "short.toml"]);
     assert_eq!(told.code, 3, "{}", told.err);
     assert!(
-        told.err.starts_with("error: cannot make the folder") && told.err.contains("out/short/records"),
+        told.err.starts_with("error: cannot create the folder") && told.err.contains("out/short/records"),
         "{}",
         told.err
     );
