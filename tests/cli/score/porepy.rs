@@ -45,5 +45,5 @@ fn pore_py_has_its_pressures_on_cells() {
         let own = (sum(&|(a, b)| (a - b).powi(2)) / sum(&|(_, b)| b * b)).sqrt();
         assert!((found / own - 1.0).abs() < 1e-3, "T_v = {time_factor}: {found} and {own}");
     }
-    assert!(told.err.contains("no settlement is judged"), "{}", told.err);
+    assert!(told.err.contains("the settlement is not judged"), "{}", told.err);
 }

@@ -310,7 +310,7 @@ fn a_result_that_is_not_whole_is_told_and_fails_a_gate() {
         told.err
     );
     let told = score(at, &lighter(40.0), &["--strict"]);
-    assert!(told.code == 0 && told.err.contains("are taken as weights"), "{}", told.err);
+    assert!(told.code == 0 && told.err.contains("are used as weights"), "{}", told.err);
     fs::write(at.join("whole.toml"), format!("whole_volume = 41.0\n{MAPPING}")).expect("a file");
     let declared = ["score", "result.csv", "--scene", "terzaghi", "--mapping", "whole.toml", "--strict"];
     let told = call(at, &declared);
@@ -343,7 +343,7 @@ fn points_that_a_mesh_lacks_show_beside_the_other_meshes() {
     let told = gate();
     assert!(
         told.code == 1
-            && told.err.contains("c.csv: samples-differ: samples stand at 1 heights per cell, and at 2 on"),
+            && told.err.contains("c.csv: samples-differ: samples lie at 1 heights per cell, and at 2 on"),
         "{}",
         told.err
     );
@@ -509,7 +509,7 @@ fn what_is_not_judged_is_told_and_strict_does_not_pass_it() {
     let declared = "sample = \"nodes\"\nunits = { stress = \"Pa\" }\nsign = { p = \"compression-positive\", u_y = \"up\" }\n";
     fs::write(at.join("nodes.toml"), declared).expect("a file");
     let nodes_declared = ["--mapping", "nodes.toml"];
-    let settlement = "no settlement is judged";
+    let settlement = "the settlement is not judged";
     for (without, options, lacks) in [
         (&[][..], &[][..], &[][..]),
         (&[0], &[], &[surface, settlement]),
