@@ -291,7 +291,7 @@ mod tests {
 14 sets: two point sets need a single soil: use another problem, or `sets = 1`
 15 conductivity_mean: the chord mean is taken along the compression of a single soil, but the column has layers: use `conductivity_mean = "points"`
 18 drag: explicit drag in a nearly impermeable soil needs steps below 1e-12 of the wave limit: use `drag = "implicit"`
-21 formulation: the quasi-static formulation neglects the waves that this problem is about: use "v-w" or "u-p", or the scene "terzaghi"
+21 formulation: the quasi-static formulation neglects the waves that this problem is about: use "v-w" or "u-p", or the problem "terzaghi"
 23 alternating: cells can have unequal numbers of points only in a one-dimensional column: leave `alternating` out, or use a column with `dimensions = 1`
 25 cells: an odd number of cells under a footing: half of it is solved, and its middle lies on a node: use an even number
 26 plate_width: the layer ends under the footing: half of the footing must lie on it: make `length` more than half of `plate_width`: 2.5 times `plate_width` is enough

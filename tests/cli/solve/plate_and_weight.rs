@@ -37,8 +37,8 @@ fn mandels_slab_is_solved_to_what_is_known_of_ten_cells() {
 #[test]
 fn what_a_slab_or_a_weight_cannot_have_is_refused_in_sentences() {
     for (arguments, sentence) in [
-        (&["mandel", "--set", "column.self_weight=true"][..], "the soil of `mandel` has no weight"),
-        (&["single-mode", "--set", "column.self_weight=true"], "self-weight belongs to the problems"),
+        (&["mandel", "--set", "column.self_weight=true"][..], "the problem `mandel` has no `self_weight`"),
+        (&["single-mode", "--set", "column.self_weight=true"], "has no `self_weight`"),
         (&["mandel", "--set", "column.dimensions=1"], "`mandel` has two dimensions"),
         (&["mandel", "--set", "layer.length=1.0"], "the problem `mandel` has no [layer]"),
     ] {

@@ -64,12 +64,12 @@ fn impossible_soils_are_refused_at_their_place() {
     for (scene, set, more, part) in [
         ("layered", thin.as_str(), "0.1", "make the last layer 0.5 m thick"),
         ("layered", &dense, "0.1", "it is layer 2 from the base"),
-        ("terzaghi", &two, "0.1", "has no layers"),
+        ("terzaghi", &two, "0.1", "has no `soils`"),
         ("yield-front", "material.reload_modulus=1e5", "0.001", "below the modulus of first loading"),
         ("yield-front", "material.preconsolidation=2", "0.001", "no yield front"),
         ("yield-front", "column.initial_stress=0.1", "1", "ask for earlier time factors"),
-        ("layered", "material.preconsolidation=2", "0.1", "has no effect"),
-        ("terzaghi", "column.initial_stress=2", "0.1", "has no stress history"),
+        ("layered", "material.preconsolidation=2", "0.1", "has no `preconsolidation`"),
+        ("terzaghi", "column.initial_stress=2", "0.1", "has no `initial_stress`"),
         ("terzaghi", "material.law=preconsolidated", "0.1", "belongs to no other problem"),
     ] {
         let told = solve(&[scene, "--cells", "10", "--set", set, "--time-factor", more]);
@@ -101,14 +101,14 @@ fn impossible_footings_are_refused_at_their_place() {
     for (scene, more, part) in [
         ("footing", &["--cells", "5"][..], "use an even number"),
         ("footing", &["--cells", "4", "--set", "layer.plate_width=5"], "the layer ends under the footing"),
-        ("footing", &["--cells", "4", "--set", "layer.load=5"], "its plate is prescribed"),
+        ("footing", &["--cells", "4", "--set", "layer.load=5"], "has no `load`"),
         ("footing", &["--cells", "4", "--set", "points.offset=0.1"], "has no [points]"),
         ("footing", &["--cells", "4", "--set", "material.law=linear"], "is `von-mises`"),
         ("footing", &["--cells", "4", "--integrator", "explicit"], "the integrator is `implicit`"),
         ("footing", &["--cells", "4", "--method", "PPP"], "a pressure projection"),
         ("footing", &["--cells", "4", "--method", "CE-SRI-patch"], "which total stress needs"),
         ("cosine-layer", &["--cells", "4", "--set", "layer.plate=smooth"], "a plate belongs to"),
-        ("terzaghi", &["--cells", "4", "--set", "material.undrained_strength=1e4"], "has no effect"),
+        ("terzaghi", &["--cells", "4", "--set", "material.undrained_strength=1e4"], "has no `undrained_strength`"),
     ] {
         let told = call(Path::new("."), &[&["solve", scene, "--format", "csv"], more].concat());
         assert_eq!((told.code, told.out.as_str()), (2, ""), "{more:?}: {}", told.err);

@@ -68,7 +68,7 @@ fn a_load_that_closes_the_pores_is_refused() {
 fn a_load_that_grows_is_refused_with_the_way_out() {
     let growing = ColumnParameters { loading_time: 3.0, ..column(0.1, 0.3) };
     let error = XieLeo::new(&growing).unwrap_err().to_string();
-    assert!(error.contains("acts at once") && error.contains("`large-strain`"), "{error}");
+    assert!(error.contains("load is sudden") && error.contains("`large-strain`"), "{error}");
 }
 
 proptest! {

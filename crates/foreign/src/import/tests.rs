@@ -458,7 +458,7 @@ fn runs_at_places_of_their_own_are_told_and_columns_place_by_place_are_not() {
     for (rows, told) in [
         ("1,5,4\n2,4,3\n3,3,2\n", None),
         ("1,5,4\n2,4,3\n3,3,2\n2,4,3\n", None),
-        ("1,5,4\n2,4,3\n3,3,2\n2.5,3.5,2\n4,3,1\n", Some(("times decrease", "times decrease"))),
+        ("1,5,4\n2,4,3\n3,3,2\n2.5,3.5,2\n4,3,1\n", Some(("its times decrease", "its times decrease"))),
         (
             "1,5,4\n2,4,3\n3,3,2\n2.000001,3,3\n",
             Some(("p is 4 Pa (a.csv:3) and 3 Pa (a.csv:5)", "s is -4 m (a.csv:3) and -3 m (a.csv:5)")),
