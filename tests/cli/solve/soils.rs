@@ -108,7 +108,11 @@ fn impossible_footings_are_refused_at_their_place() {
         ("footing", &["--cells", "4", "--method", "PPP"], "a pressure projection"),
         ("footing", &["--cells", "4", "--method", "CE-SRI-patch"], "which total stress needs"),
         ("cosine-layer", &["--cells", "4", "--set", "layer.plate=smooth"], "a plate belongs to"),
-        ("terzaghi", &["--cells", "4", "--set", "material.undrained_strength=1e4"], "has no `undrained_strength`"),
+        (
+            "terzaghi",
+            &["--cells", "4", "--set", "material.undrained_strength=1e4"],
+            "has no `undrained_strength`",
+        ),
     ] {
         let told = call(Path::new("."), &[&["solve", scene, "--format", "csv"], more].concat());
         assert_eq!((told.code, told.out.as_str()), (2, ""), "{more:?}: {}", told.err);
