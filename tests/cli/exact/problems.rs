@@ -106,7 +106,7 @@ fn impossible_problems_are_refused_in_sentences() {
     refused(&["layered", "--set", "column.soils=[{porosity=0.4}]"], "`thickness` is missing in soils");
     refused(&["layered", "--set", "column.soils=[{thickness=1.0,porosity=1.4}]"], "between 0 and 1");
     refused(&["layered", "--set", "material.poissons_ration=0.2"], "poissons_ratio");
-    refused(&["layered", "--set", "material.preconsolidation=1e4"], "has no effect");
+    refused(&["layered", "--set", "material.preconsolidation=1e4"], "has no `preconsolidation`");
     let front =
         ["yield-front", "--set", "material.preconsolidation=0.5", "--set", "material.reload_modulus=1e5"];
     refused(&front, "below the modulus of first loading");

@@ -46,6 +46,7 @@ fn dimension(key: &str, dimensions: i32) -> [i32; 3] {
         | "water_bulk_modulus" => [-1, -2, 1],
         "grain_density" | "water_density" => [-3, 0, 1],
         "solid_mass" => [dimensions - 3, 0, 1],
+        "kinetic" | "strain" => [dimensions - 1, -2, 1],
         // Of the checks of the start it is a share of the load.
         "totals.unbalanced_force" => [dimensions - 2, -2, 1],
         _ => [0, 0, 0],
