@@ -107,7 +107,7 @@ fn impossible_footings_are_refused_at_their_place() {
         ("footing", &["--cells", "4", "--integrator", "explicit"], "the integrator is `implicit`"),
         ("footing", &["--cells", "4", "--method", "PPP"], "a pressure projection"),
         ("footing", &["--cells", "4", "--method", "CE-SRI-patch"], "which total stress needs"),
-        ("cosine-layer", &["--cells", "4", "--set", "layer.plate=smooth"], "a plate belongs to"),
+        ("cosine-layer", &["--cells", "4", "--set", "layer.plate=smooth"], "has no `plate`"),
         (
             "terzaghi",
             &["--cells", "4", "--set", "material.undrained_strength=1e4"],
