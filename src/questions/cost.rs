@@ -110,7 +110,7 @@ fn chart(precision: &WorkPrecision<'_>) -> Chart {
         ChartAxis::log10("counted work (s)"),
         ChartAxis::log10("error of the pore pressure, worst of the outputs (–)"),
     );
-    chart.size = Size { width: 1000.0, plot_height: 460.0, equal_units: false };
+    chart.size = Size { width: 1000.0, plot_height: 460.0 };
     chart.naming = Naming::Hover;
     let fronts = precision.fronts();
     let methods = distinct(fronts.iter().map(|front| front.method.to_string()));

@@ -8,7 +8,6 @@ pub mod convergence;
 pub mod cost;
 pub mod ends;
 pub mod expected;
-pub mod fields;
 pub mod finding;
 pub mod load_curves;
 pub mod locking;
@@ -41,7 +40,6 @@ use crate::questions::convergence::CONVERGENCE;
 use crate::questions::cost::COST;
 use crate::questions::ends::ENDS;
 use crate::questions::expected::EXPECTED;
-use crate::questions::fields::FIELDS;
 use crate::questions::finding::{Finding, Place, Question};
 use crate::questions::load_curves::LOAD_CURVES;
 use crate::questions::locking::LOCKING;
@@ -76,7 +74,6 @@ pub static QUESTIONS: &[&Question] = &[
     &PEERS,
     &PAPER,
     &LOCKING,
-    &FIELDS,
     &LOAD_CURVES,
     &PROFILES,
     &STABILITY,

@@ -102,7 +102,7 @@ fn table_of_equations(printed: &PublishedEquations) -> Table {
 }
 
 /// The size of one figure of four in a row, which a phone shows too.
-const QUARTER: Size = Size { width: 368.0, plot_height: 300.0, equal_units: false };
+const QUARTER: Size = Size { width: 368.0, plot_height: 300.0 };
 
 /// A figure as one of the four.
 fn quarter(mut figure: Figure, number: &str, finding: &str) -> Figure {

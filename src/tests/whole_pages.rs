@@ -389,11 +389,6 @@ fn figure_told(name: &str, chart: &Chart) -> String {
     for triangle in &chart.triangles {
         let _ = write!(text, "\n  slope {} beside {}", triangle.slope, triangle.beside);
     }
-    if let Some(field) = &chart.field {
-        let size = field.values.iter().map(|value| value.abs()).fold(0.0, f64::max);
-        let _ =
-            write!(text, "\n  {} of {} cells, the largest {}", field.label, field.values.len(), short(size));
-    }
     for row in chart.rows.iter().flat_map(|rows| &rows.rows) {
         let _ = write!(text, "\n  {}: {}, {}", row.name, row.without.join("|"), row.words.join("|"));
     }

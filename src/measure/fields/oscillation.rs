@@ -84,10 +84,6 @@ fn turning_points(profile: &[f64]) -> Vec<usize> {
 pub struct PlaneField {
     /// Points along the layer.
     pub columns: usize,
-    /// Lines between the points over the length, from 0 to `L/H`.
-    pub x_edges: Vec<f64>,
-    /// Lines between the points over the height.
-    pub y_edges: Vec<f64>,
     /// `p/q` of the run.
     pub computed: Vec<f64>,
     /// `p/q` of the scene's own reference.
@@ -109,14 +105,10 @@ impl PlaneField {
         };
         let exact = exact_pressure(record, time_factor, &snapshot.points)?;
         let columns = across * case.points_per_cell;
-        let rows = case.cells * case.points_per_cell;
-        let per_height = 1.0 / rows as f64;
         let over_load =
             |pressures: &[f64]| pressures.iter().map(|p| p / case.column.pressure_scale()).collect();
         Ok(Some(Self {
             columns,
-            x_edges: (0..=columns).map(|i| i as f64 * per_height).collect(),
-            y_edges: (0..=rows).map(|i| i as f64 * per_height).collect(),
             computed: over_load(&snapshot.points.pressure),
             exact: over_load(&exact),
         }))

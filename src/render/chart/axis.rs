@@ -51,6 +51,9 @@ pub(super) fn drawable(value: f64, scale: Scale) -> Result<f64, Reason> {
     }
 }
 
+/// Margin at both ends as a share of the length.
+const MARGIN: f64 = 0.04;
+
 /// The lower and upper end of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Ends {
@@ -60,8 +63,8 @@ pub(super) struct Ends {
 }
 
 impl Ends {
-    /// The ends of an axis that shows `values`, with a margin as a share of its length.
-    pub fn of(axis: &ChartAxis, values: impl Iterator<Item = f64>, margin: f64) -> Self {
+    /// The ends of an axis that shows `values`.
+    pub fn of(axis: &ChartAxis, values: impl Iterator<Item = f64>) -> Self {
         let scale = axis.scale;
         let is_drawable = |value: f64| drawable(value, scale).is_ok();
         if let Some((low, high)) = axis.range
@@ -77,11 +80,11 @@ impl Ends {
         let (low, high) = match scale {
             Scale::Linear if low > high => (0.0, 1.0),
             Scale::Log10 if low > high => (0.1, 10.0),
-            Scale::Linear => widen(low, high, margin),
+            Scale::Linear => widen(low, high),
             Scale::Log10 => {
                 let (a, b) = (elementary::log10(low), elementary::log10(high));
-                let least = if b - a < 0.3 && (margin > 0.0 || a == b) { 0.15 } else { 0.0 };
-                let room = (margin * (b - a)).max(least);
+                let least = if b - a < 0.3 { 0.15 } else { 0.0 };
+                let room = (MARGIN * (b - a)).max(least);
                 (elementary::powf(10.0, a - room), elementary::powf(10.0, b + room))
             }
         };
@@ -116,7 +119,7 @@ impl Ends {
 }
 
 /// Adds a margin at both ends, except at a round number, where a curve may end in the frame.
-fn widen(low: f64, high: f64, margin: f64) -> (f64, f64) {
+fn widen(low: f64, high: f64) -> (f64, f64) {
     let span = high - low;
     if span <= f64::EPSILON * 8.0 * low.abs().max(high.abs()) {
         let room = if low == 0.0 { 1.0 } else { low.abs() * 0.1 };
@@ -125,7 +128,7 @@ fn widen(low: f64, high: f64, margin: f64) -> (f64, f64) {
     let step = elementary::powf(10.0, (elementary::log10(span) - 0.3).floor()) / 2.0;
     let room = |end: f64| {
         let is_round = (end / step - (end / step).round()).abs() < 1e-9;
-        if is_round { 0.0 } else { margin * span }
+        if is_round { 0.0 } else { MARGIN * span }
     };
     (low - room(low), high + room(high))
 }
@@ -326,7 +329,7 @@ mod tests {
     use plotters::coord::ranged1d::BoldPoints;
 
     fn ends(axis: &ChartAxis, values: &[f64]) -> Ends {
-        Ends::of(axis, values.iter().copied(), 0.04)
+        Ends::of(axis, values.iter().copied())
     }
 
     fn placed(scale: Scale, low: f64, high: f64, length: f64, is_upright: bool) -> PlacedAxis {

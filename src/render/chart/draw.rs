@@ -1,23 +1,20 @@
 //! Draws a figure: its layout in pixels, then layer over layer from the back to the front.
 
 use crate::render::RenderError;
-use crate::render::chart::axis::{Ends, PlacedAxis, Reason, Scale, TICK_FONT};
+use crate::render::chart::axis::{Ends, PlacedAxis, Reason, TICK_FONT};
 use crate::render::chart::ends::{end_names, end_names_width};
-use crate::render::chart::looks::{Legend, Look, draw_marker, field_colour, looks};
+use crate::render::chart::looks::{Legend, Look, draw_marker, looks};
 use crate::render::chart::multiples::{SIDE_BY_SIDE, side_by_side};
 use crate::render::chart::rows;
 use crate::render::chart::slots::TWIN;
 use crate::render::chart::svg::{
-    Area, Drawn, Font, NARROW, Px, document, group, layer, line, scripted, spot, stroke, units, write,
+    Area, Drawn, Font, NARROW, Px, document, group, layer, line, scripted, stroke, units, write,
 };
 use crate::render::chart::words::{Frame, Space, names, rules, triangles};
-use crate::render::chart::{Chart, ChartAxis, Naming, Series, Style};
+use crate::render::chart::{Chart, Naming, Series, Style};
 use crate::render::palette::{FINE_GRID, FRAME, GRID, QUIET, SCREEN, TEXT};
 use crate::render::script::{width, wrap};
-use oedometer_soil::wording::count_of;
 use plotters::chart::{ChartBuilder, LabelAreaPosition};
-use plotters::element::Rectangle;
-use plotters::prelude::Color;
 use plotters::style::text_anchor::HPos;
 use std::collections::BTreeMap;
 
@@ -28,23 +25,14 @@ const TICK: Font = Font { size: TICK_FONT, colour: TEXT.light, is_bold: false };
 const NOTE: Font = Font { size: 11.0, colour: QUIET.light, is_bold: false };
 /// The most height of a plot on the screen of a phone, px.
 const NARROW_HEIGHT: f64 = 280.0;
-/// The widest map that a phone shows smaller, px.
-const WIDEST_MAP: f64 = 600.0;
 /// Margin around the figure, px.
 const PAD: f64 = 14.0;
 /// Height of a line in sizes of its font.
 const LINE: f64 = 1.3;
 /// Height of the ticks, labels and words of the horizontal axis, px.
 const BELOW: f64 = 42.0;
-/// Gap before the colour bar and its width, px.
-const BAR: (f64, f64) = (18.0, 16.0);
-/// Gap between the labels of the colour bar and its words, px.
-const BAR_WORDS: f64 = 8.0;
 /// Tick, gap to its label, and room for the words of an upright axis, px.
 const BESIDE: f64 = 10.0 + 1.4 * LABEL.size;
-
-/// Rectangles of the colour bar.
-const STEPS: i32 = 120;
 
 /// A figure laid out, in pixels.
 pub(super) struct Layout {
@@ -52,8 +40,6 @@ pub(super) struct Layout {
     pub plot: Frame,
     pub x: PlacedAxis,
     pub y: PlacedAxis,
-    /// The axis of the colour bar.
-    bar: Option<PlacedAxis>,
     title: Vec<String>,
     subtitle: Vec<String>,
     notes: Vec<String>,
@@ -78,23 +64,13 @@ impl Layout {
         let head = LINE * (title.len() as f64 * TITLE.size + subtitle.len() as f64 * SUBTITLE.size);
         let top = PAD + head + 8.0;
 
-        let y_axis = |height: f64| PlacedAxis::new(&chart.y, y_ends, (top + height, top), true);
-        let bar_axis = |height: f64| {
-            let reach = chart.drawn_field()?.0.extent();
-            let ends = Ends { scale: Scale::Linear, low: -reach, high: reach };
-            Some(PlacedAxis::new(&ChartAxis::linear(""), ends, (top + height, top), true))
-        };
-        let beside = end_names_width(chart);
-        let left = PAD + y_axis(tall).label_width() + BESIDE;
-        let right = bar_axis(tall)
-            .map_or(PAD + 14.0 + beside, |bar| PAD + BAR.0 + BAR.1 + bar.label_width() + BESIDE + BAR_WORDS);
-        let room = (wide - left - right).max(60.0);
-        let (plot_width, plot_height) = shape(chart, (x_ends, y_ends), room, tall);
-        let plot = Frame { left, top, right: left + plot_width, bottom: top + plot_height };
+        let y_axis = PlacedAxis::new(&chart.y, y_ends, (top + tall, top), true);
+        let left = PAD + y_axis.label_width() + BESIDE;
+        let room = (wide - left - PAD - 14.0 - end_names_width(chart)).max(60.0);
+        let plot = Frame { left, top, right: left + room, bottom: top + tall };
         let x = PlacedAxis::new(&chart.x, x_ends, (plot.left, plot.right), false);
-        let y = y_axis(plot_height);
 
-        let place = |point: &(f64, f64)| x.px(point.0).zip(y.px(point.1));
+        let place = |point: &(f64, f64)| x.px(point.0).zip(y_axis.px(point.1));
         let points: Vec<Vec<_>> =
             chart.series.iter().map(|series| series.points.iter().map(place).collect()).collect();
         let looks = looks(chart);
@@ -105,33 +81,17 @@ impl Layout {
         let below = legend.height() + notes.len() as f64 * NOTE.size * LINE;
         let height = plot.bottom + BELOW + if below > 0.0 { 8.0 + below + PAD * 0.8 } else { 0.0 };
         let size = (wide, height.ceil());
-        Self { size, plot, x, y, bar: bar_axis(plot_height), title, subtitle, notes, legend, looks, points }
+        Self { size, plot, x, y: y_axis, title, subtitle, notes, legend, looks, points }
     }
 }
 
 /// The ends of both axes.
 pub(super) fn ends(chart: &Chart) -> (Ends, Ends) {
     let points = || chart.series.iter().flat_map(|series| &series.points);
-    let edges = |x: bool| {
-        let field = chart.field.as_ref();
-        field.map_or(&[][..], |field| if x { &field.x_edges } else { &field.y_edges }).iter().copied()
-    };
-    // A field fills its axes.
-    let margin = if chart.field.is_some() { 0.0 } else { 0.04 };
     (
-        Ends::of(&chart.x, points().map(|point| point.0).chain(edges(true)), margin),
-        Ends::of(&chart.y, points().map(|point| point.1).chain(edges(false)), margin),
+        Ends::of(&chart.x, points().map(|point| point.0)),
+        Ends::of(&chart.y, points().map(|point| point.1)),
     )
-}
-
-/// Width and height of the plot; with equal units the direction with less room decides.
-fn shape(chart: &Chart, (x, y): (Ends, Ends), room: f64, tall: f64) -> (f64, f64) {
-    let (dx, dy) = (x.high - x.low, y.high - y.low);
-    let unit = (room / dx).min(tall / dy);
-    if !chart.size.equal_units || !unit.is_finite() || unit <= 0.0 {
-        return (room, tall);
-    }
-    ((unit * dx).max(30.0), (unit * dy).max(30.0))
 }
 
 /// Sentences on what the figure cannot show.
@@ -163,13 +123,6 @@ fn notes(chart: &Chart, x: &Ends, y: &Ends) -> Vec<String> {
     let mut notes: Vec<String> = Vec::new();
     notes.extend((total > 0).then(|| format!("{total} {values} not drawn: {reasons}.")));
     notes.extend(without_data(chart));
-    if let Some(field) = &chart.field {
-        let missing = field.values.len() - field.drawn().count();
-        let is_broken = field.shape().is_none();
-        notes.extend(is_broken.then(|| "The edges and values of the field do not match.".to_owned()));
-        let are = count_of(missing, "cell without a value is", "cells without a value are");
-        notes.extend((missing > 0 && !is_broken).then(|| format!("{are} grey.")));
-    }
     notes
 }
 
@@ -205,10 +158,7 @@ impl Chart {
     pub fn narrow_svg(&self) -> Result<Option<String>, RenderError> {
         let document = match &self.rows {
             Some(rows) => self.document_of(|| rows::elements(self, rows, true)),
-            // A map is read without its letters.
-            None if self.size.width <= if self.field.is_some() { WIDEST_MAP } else { NARROW } => {
-                return Ok(None);
-            }
+            None if self.size.width <= NARROW => return Ok(None),
             None => {
                 let mut narrow = self.clone();
                 narrow.size.plot_height = self.size.plot_height.min(NARROW_HEIGHT);
@@ -280,10 +230,10 @@ impl Chart {
         named
     }
 
-    /// White ground, grid and axes, or a field with its colour bar.
+    /// White ground, grid and axes.
     fn axes(&self, layout: &Layout) -> Result<String, String> {
         let (plot, size) = (layout.plot, layout.size);
-        let mut out = layer(size, |area| {
+        layer(size, |area| {
             area.fill(&SCREEN.light)?;
             let mut chart = ChartBuilder::on(area)
                 .margin_left(units(PAD))
@@ -308,63 +258,10 @@ impl Chart {
                 .y_label_formatter(&y_label)
                 .axis_desc_style(upright.style(HPos::Center))
                 .y_desc(scripted(&self.y.label));
-            if self.drawn_field().is_some() {
-                mesh.disable_mesh();
-            }
             mesh.draw()?;
             let at = (f64::midpoint(plot.left, plot.right), plot.bottom + BELOW - 8.0);
             write(area, &self.x.label, at, label, HPos::Center)
-        })?;
-        if self.drawn_field().is_some() {
-            let cells = layer(size, |area| self.cells(area, layout))?;
-            out += &group(" shape-rendering=\"crispEdges\"", "", &cells);
-        }
-        Ok(out)
-    }
-
-    /// The cells of a field, and its colour bar where it has one.
-    fn cells(&self, area: &Area<'_>, layout: &Layout) -> Drawn {
-        let Some((field, (columns, _))) = self.drawn_field() else { return Ok(()) };
-        let extent = field.extent();
-        let rectangle = |from: (Option<f64>, Option<f64>), to: (Option<f64>, Option<f64>), share: f64| {
-            let corners = [from, to].map(|(x, y)| spot((x.unwrap_or_default(), y.unwrap_or_default())));
-            area.draw(&Rectangle::new(corners, field_colour(share).filled()))
-        };
-        for (place, value) in field.values.iter().enumerate() {
-            let (row, column) = (place / columns, place % columns);
-            let corner = |after: usize| {
-                (layout.x.px(field.x_edges[column + after]), layout.y.px(field.y_edges[row + after]))
-            };
-            rectangle(corner(0), corner(1), value / extent)?;
-        }
-        let Some(bar) = &layout.bar else { return Ok(()) };
-        let (plot, size) = (layout.plot, layout.size);
-        let left = plot.right + BAR.0;
-        let label_room = bar.label_width() + BESIDE + BAR_WORDS;
-        for step in 0..STEPS {
-            let share = |step: i32| f64::from(2 * step) / f64::from(STEPS) - 1.0;
-            let (low, high) = (share(step), share(step + 1));
-            let (from, to) = (bar.px(low * extent), bar.px(high * extent));
-            rectangle((Some(left), from), (Some(left + BAR.1), to), f64::midpoint(low, high))?;
-        }
-        let mut chart = ChartBuilder::on(area)
-            .margin_left(units(left))
-            .margin_top(units(plot.top))
-            .margin_right(units(size.0 - left - BAR.1 - label_room))
-            .margin_bottom(units(size.1 - plot.bottom))
-            .set_label_area_size(LabelAreaPosition::Right, units(label_room))
-            .build_cartesian_2d(0..1, bar.for_plotters())?;
-        chart
-            .configure_mesh()
-            .disable_mesh()
-            .disable_x_axis()
-            .axis_style(stroke(FRAME.light, 1.0))
-            .set_all_tick_mark_size(units(4.0))
-            .label_style(TICK.style(HPos::Left))
-            .y_label_formatter(&|y| scripted(&bar.label_at(*y)))
-            .axis_desc_style(fitted(&field.label, plot).style(HPos::Center))
-            .y_desc(scripted(&field.label))
-            .draw()
+        })
     }
 
     /// The lines of all series, theory last, cut at the frame.
@@ -439,7 +336,7 @@ impl Chart {
                 write(area, words, (PAD, bottom + 0.5 * NOTE.size), NOTE, HPos::Left)?;
                 bottom += NOTE.size * LINE;
             }
-            if layout.points.iter().flatten().flatten().next().is_none() && self.drawn_field().is_none() {
+            if layout.points.iter().flatten().flatten().next().is_none() {
                 let Frame { left, top, right, bottom } = layout.plot;
                 let centre = (f64::midpoint(left, right), f64::midpoint(top, bottom));
                 write(area, "no data", centre, Font { size: 22.0, ..NOTE }, HPos::Center)?;
@@ -453,10 +350,8 @@ impl Chart {
         let mut names: Vec<&str> =
             self.series.iter().map(|series| series.name.as_str()).filter(|name| !name.is_empty()).collect();
         names.dedup();
-        let field =
-            self.field.as_ref().map(|field| format!("{} in colour. ", field.label)).unwrap_or_default();
         let what = if names.is_empty() { String::new() } else { format!(": {}", names.join(", ")) };
-        format!("{field}{} against {}{what}.", self.y.label, self.x.label)
+        format!("{} against {}{what}.", self.y.label, self.x.label)
     }
 }
 

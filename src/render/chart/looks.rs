@@ -15,34 +15,6 @@ use plotters::style::text_anchor::HPos;
 /// Lengths of dashes and gaps in drawing units.
 const DASHES: [&str; 7] = ["", "75 35", "22 28", "95 30 22 30", "105 25", "60 25 20 25 20 25", "40 30"];
 
-/// Blue to red through near-white, after the `RdBu` of Brewer (2003).
-const FIELD_COLOURS: [RGBColor; 9] = [
-    RGBColor(0x21, 0x66, 0xAC),
-    RGBColor(0x43, 0x93, 0xC3),
-    RGBColor(0x92, 0xC5, 0xDE),
-    RGBColor(0xD1, 0xE5, 0xF0),
-    RGBColor(0xF7, 0xF7, 0xF7),
-    RGBColor(0xFD, 0xDB, 0xC7),
-    RGBColor(0xF4, 0xA5, 0x82),
-    RGBColor(0xD6, 0x60, 0x4D),
-    RGBColor(0xB2, 0x18, 0x2B),
-];
-
-/// The colour of a value as a share of the largest, −1 to 1; grey where it is not finite. In 240 steps, so that equal
-/// neighbours can share a rectangle.
-pub(super) fn field_colour(share: f64) -> RGBColor {
-    if !share.is_finite() {
-        return RGBColor(0xC9, 0xC9, 0xC9);
-    }
-    let place = (120.0 * (share.clamp(-1.0, 1.0) + 1.0)).round() / 30.0;
-    let below = place.floor().min(7.0);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 7")]
-    let (low, high) = (FIELD_COLOURS[below as usize], FIELD_COLOURS[below as usize + 1]);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
-    let part = |a: u8, b: u8| (f64::from(a) + (place - below) * (f64::from(b) - f64::from(a))).round() as u8;
-    RGBColor(part(low.0, high.0), part(low.1, high.1), part(low.2, high.2))
-}
-
 /// How a series looks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Look {
@@ -271,13 +243,6 @@ mod tests {
             assert!(hole.contains("#FFFFFF"), "{hole}");
             assert_eq!(drawn(slot + 14), drawn((slot + 2) % 7), "full again");
         }
-    }
-
-    #[test]
-    fn zero_is_near_white_and_the_ends_are_blue_and_red() {
-        let ends = [-1.0, 0.0, 99.0].map(field_colour);
-        assert_eq!(ends, [FIELD_COLOURS[0], FIELD_COLOURS[4], FIELD_COLOURS[8]]);
-        assert_eq!(field_colour(f64::NAN), RGBColor(0xC9, 0xC9, 0xC9));
     }
 
     #[test]

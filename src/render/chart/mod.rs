@@ -1,6 +1,6 @@
 //! Figures: a plain description ([`Chart`]), drawn as SVG by plotters ([`Chart::svg`]).
 //!
-//! One type serves every picture of a report: convergence, isochrones, work and precision, maps.
+//! One type serves every picture of a report: convergence, isochrones, work and precision.
 //! Values that cannot be drawn are counted below the figure.
 
 mod axis;
@@ -32,8 +32,6 @@ pub struct Chart {
     pub x: ChartAxis,
     /// Vertical axis.
     pub y: ChartAxis,
-    /// Cells of colour below everything else.
-    pub field: Option<ColourField>,
     /// Lines and markers.
     pub series: Vec<Series>,
     /// Horizontal lines at single values.
@@ -80,7 +78,6 @@ impl Chart {
             subtitle: None,
             x,
             y,
-            field: None,
             series: Vec::new(),
             rules: Vec::new(),
             triangles: Vec::new(),
@@ -98,8 +95,7 @@ impl Chart {
         self
     }
 
-    /// Whether it shows more than a sentence would: a field, or results that make more than one point, one upright or one level
-    /// line.
+    /// Whether it shows more than a sentence would: results that make more than one point, one upright or one level line.
     pub fn is_telling(&self) -> bool {
         let has_results = self.series.iter().any(|series| series.style != Style::Theory);
         let shown = self.series.iter().filter(|series| !has_results || series.style != Style::Theory);
@@ -109,42 +105,23 @@ impl Chart {
             shown.map(|series| (series, series.points.iter().filter(is_drawn).copied().collect())).collect();
         let points = || drawn.iter().flat_map(|(_, points)| points);
         let joins = drawn.iter().any(|(series, points)| series.style == Style::Markers || points.len() > 1);
-        self.field.is_some()
-            || joins
-                && points().count() >= 3
-                && differ(points().map(|(x, _)| *x), SAME)
-                && differ(points().map(|(_, y)| *y), SAME)
+        joins
+            && points().count() >= 3
+            && differ(points().map(|(x, _)| *x), SAME)
+            && differ(points().map(|(_, y)| *y), SAME)
     }
 
-    /// The data as CSV with all digits: one row per point of a series, and one per cell of a field, at its middle.
+    /// The data as CSV with all digits: one row per point of a series.
     pub fn data_csv(&self) -> String {
         let quoted = |text: &str| format!("\"{}\"", csv_field(text).replace('"', "\"\""));
-        let mut out = format!("series,{},{}", quoted(&self.x.label), quoted(&self.y.label));
-        if let Some(field) = &self.field {
-            let _ = write!(out, ",{}", quoted(&field.label));
-        }
-        out.push('\n');
-        let end = if self.field.is_some() { "," } else { "" };
+        let mut out = format!("series,{},{}\n", quoted(&self.x.label), quoted(&self.y.label));
         for series in &self.series {
             let name = quoted(&series.name);
             for (x, y) in &series.points {
-                let _ = writeln!(out, "{name},{},{}{end}", number::exact(*x), number::exact(*y));
-            }
-        }
-        if let Some((field, (columns, rows))) = self.drawn_field() {
-            let middle = |edges: &[f64], at: usize| number::exact(f64::midpoint(edges[at], edges[at + 1]));
-            for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
-                let value = number::exact(field.values[row * columns + column]);
-                let (x, y) = (middle(&field.x_edges, column), middle(&field.y_edges, row));
-                let _ = writeln!(out, "{},{x},{y},{value}", quoted(&self.title));
+                let _ = writeln!(out, "{name},{},{}", number::exact(*x), number::exact(*y));
             }
         }
         out
-    }
-
-    /// The field with its numbers of columns and rows, where its edges and values fit each other.
-    fn drawn_field(&self) -> Option<(&ColourField, (usize, usize))> {
-        self.field.as_ref().and_then(|field| Some((field, field.shape()?)))
     }
 }
 
@@ -155,18 +132,16 @@ pub struct Size {
     pub width: f64,
     /// The height between the axes, without titles, legend and notes.
     pub plot_height: f64,
-    /// Draw one unit of x as long as one unit of y, as maps of a body need.
-    pub equal_units: bool,
 }
 
 impl Size {
     /// A figure with a neighbour.
-    pub const PANEL: Self = Self { width: 560.0, plot_height: 360.0, equal_units: false };
+    pub const PANEL: Self = Self { width: 560.0, plot_height: 360.0 };
 }
 
 impl Default for Size {
     fn default() -> Self {
-        Self { width: 760.0, plot_height: 360.0, equal_units: false }
+        Self { width: 760.0, plot_height: 360.0 }
     }
 }
 
@@ -315,43 +290,3 @@ pub struct SlopeTriangle {
     /// Name of the series beside which it stands.
     pub beside: String,
 }
-
-/// One value per cell on a rectangular grid. Its colours are near-white at zero and safe for the colour-blind.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ColourField {
-    /// Quantity and unit, written at the colour bar.
-    pub label: String,
-    /// Value of the last colour on both sides of zero, where several fields share it; the largest own value if
-    /// `None`.
-    pub reach: Option<f64>,
-    /// The lines between the columns of cells, one more than columns.
-    pub x_edges: Vec<f64>,
-    /// The lines between the rows of cells, one more than rows.
-    pub y_edges: Vec<f64>,
-    /// The values, row after row, each row from the first column on. A cell that is not finite is grey.
-    pub values: Vec<f64>,
-}
-
-impl ColourField {
-    /// Columns and rows; `None` where edges and values do not fit each other.
-    fn shape(&self) -> Option<(usize, usize)> {
-        let columns = self.x_edges.len().checked_sub(1)?;
-        let rows = self.y_edges.len().checked_sub(1)?;
-        (columns > 0 && rows > 0 && self.values.len() == columns * rows).then_some((columns, rows))
-    }
-
-    /// The values that can be drawn.
-    fn drawn(&self) -> impl Iterator<Item = f64> {
-        self.values.iter().copied().filter(|value| drawable(*value, Scale::Linear).is_ok())
-    }
-
-    /// The value of the last colour.
-    fn extent(&self) -> f64 {
-        let own = self.drawn().fold(0.0, |most: f64, value| most.max(value.abs()));
-        let reach = self.reach.unwrap_or(own);
-        if reach > 0.0 && reach.is_finite() { reach } else { 1.0 }
-    }
-}
-
-#[cfg(test)]
-mod tests;

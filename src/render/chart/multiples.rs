@@ -32,7 +32,7 @@ impl Chart {
         let slots: Option<BTreeSet<usize>> =
             self.series.iter().filter(|series| is_counted(series)).map(|series| series.slot).collect();
         let colours = slots.map_or(names.len(), |slots| slots.len());
-        if colours <= MOST_SERIES || self.field.is_some() {
+        if colours <= MOST_SERIES {
             return Vec::new();
         }
         let shown = by_method(&names);

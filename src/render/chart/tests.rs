@@ -3,8 +3,8 @@
 
 mod gallery;
 
-use crate::render::chart::{Chart, ChartAxis, ColourField, Rule, Series, Size, SlopeTriangle, Style, slots};
-use gallery::{convergence, gallery, nothing, pressure_field};
+use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle, Style, slots};
+use gallery::{convergence, gallery, nothing};
 
 fn svg(chart: &Chart) -> String {
     chart.svg().unwrap_or_else(|e| panic!("{e}"))
@@ -52,7 +52,6 @@ fn what_is_not_drawn_is_counted() {
     let text =
         svg(&convergence().with(Series::new("CPDI", Vec::new())).with(Series::new("MPM2", Vec::new())));
     assert!(text.contains("Without data here: CPDI, MPM2."), "{text}");
-    assert!(svg(&pressure_field()).contains("1 cell without a value is grey."));
 }
 
 #[test]
@@ -78,18 +77,6 @@ fn a_figure_names_its_series_in_groups_of_their_dashes_in_a_legend_and_to_those_
         [Style::Line, Style::Theory, Style::Markers, Style::LineAndMarkers].map(told),
         [false, false, true, true]
     );
-    let mut field = pressure_field();
-    let own = field.field.as_mut().expect("a field");
-    own.values[3] = f64::INFINITY;
-    let text = svg(&field);
-    assert!(text.contains(">2 cells without a value are grey.</text>"), "{text}");
-    assert!(text.contains("<desc>p/q (–) in colour. y/H (–) against x/L (–).</desc>"), "{text}");
-    field.field.as_mut().expect("a field").values.pop();
-    let text = svg(&field);
-    assert!(
-        text.contains(">The edges and values of the field do not match.<") && !text.contains("grey"),
-        "{text}"
-    );
 }
 
 #[test]
@@ -105,7 +92,7 @@ fn points_outside_fixed_axes_are_counted_and_lines_cut() {
 fn hostile_descriptions_still_make_a_figure() {
     let mut chart = convergence();
     chart.title = "a < b & \"c\" \u{0} \u{e000}".into();
-    chart.size = Size { width: f64::NAN, plot_height: -5.0, equal_units: true };
+    chart.size = Size { width: f64::NAN, plot_height: -5.0 };
     chart.x = chart.x.with_ticks(vec![f64::NAN, -1.0, 0.05]);
     chart.triangles.push(SlopeTriangle { slope: f64::NAN, beside: "MPM".into() });
     chart.triangles.push(SlopeTriangle { slope: 0.0, beside: "nobody".into() });
@@ -115,11 +102,6 @@ fn hostile_descriptions_still_make_a_figure() {
     chart.series.push(Series::new("", Vec::new()));
     let text = svg(&chart);
     assert!(text.contains("a &lt; b &amp; &quot;c&quot;"), "{text}");
-    let mut field = pressure_field();
-    for values in [Vec::new(), vec![f64::NAN; 24 * 24], vec![1.0; 24 * 24]] {
-        field.field.as_mut().unwrap_or_else(|| panic!("no field")).values = values;
-        assert!(svg(&field).ends_with("</svg>\n"));
-    }
 }
 
 /// The value of an attribute of the element that `tag` opens.
@@ -201,43 +183,10 @@ fn depth_runs_downwards() {
 }
 
 #[test]
-fn the_first_row_of_a_field_is_the_lowest_and_its_first_column_the_leftmost() {
-    let mut chart = pressure_field();
-    if let Some(field) = &mut chart.field {
-        (field.x_edges, field.y_edges) = (vec![0.0, 1.0, 2.0, 3.0], vec![0.0, 1.0, 2.0]);
-        // The lowest at the right end of the first row, the highest at the left end of the second.
-        field.values = vec![0.0, 0.0, -1.0, 1.0, 0.0, 0.0];
-    }
-    let text = svg(&chart);
-    let cell = |colour: &str| {
-        let line = text.lines().find(|l| l.starts_with("<rect") && l.contains(colour));
-        let line = line.unwrap_or_else(|| panic!("{colour}"));
-        (number(line, "x"), number(line, "y"))
-    };
-    let (low, high) = (cell("#2166AC"), cell("#B2182B"));
-    assert!(low.1 > high.1 && low.0 > high.0, "{low:?} {high:?}");
-}
-
-#[test]
-fn every_point_and_every_cell_has_a_row() {
-    let mut chart = Chart::new("f", ChartAxis::linear("x, m"), ChartAxis::linear("y"))
+fn every_point_has_a_row() {
+    let chart = Chart::new("f", ChartAxis::linear("x, m"), ChartAxis::linear("y"))
         .with(Series::new("a \"b\"", vec![(0.1, 2.0), (0.3, 4.0)]));
     assert_eq!(chart.data_csv(), "series,\"x, m\",\"y\"\n\"a \"\"b\"\"\",0.1,2.0\n\"a \"\"b\"\"\",0.3,4.0\n");
-    let (x_edges, y_edges) = (vec![0.0, 1.0, 2.0, 4.0], vec![0.0, 2.0, 6.0]);
-    let field = ColourField {
-        label: "p".to_owned(),
-        reach: None,
-        x_edges,
-        y_edges,
-        values: vec![5.0, 6.0, 7.0, 8.0, 9.0, 10.0],
-    };
-    chart.field = Some(field);
-    assert_eq!(
-        chart.data_csv(),
-        "series,\"x, m\",\"y\",\"p\"\n\"a \"\"b\"\"\",0.1,2.0,\n\"a \"\"b\"\"\",0.3,4.0,\n\
-         \"f\",0.5,1.0,5.0\n\"f\",1.5,1.0,6.0\n\"f\",3.0,1.0,7.0\n\
-         \"f\",0.5,4.0,8.0\n\"f\",1.5,4.0,9.0\n\"f\",3.0,4.0,10.0\n"
-    );
 }
 
 #[test]

@@ -1,5 +1,4 @@
 //! Figures of every kind from made-up data.
-use crate::render::chart::ColourField;
 use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle, Style};
 use std::f64::consts::PI;
 
@@ -109,33 +108,6 @@ fn work_precision() -> Chart {
     chart
 }
 
-pub(super) fn pressure_field() -> Chart {
-    let edges: Vec<f64> = steps(24).collect();
-    let mut chart = Chart::new(
-        "Pore pressure, full integration",
-        ChartAxis::linear("x/L (–)"),
-        ChartAxis::linear("y/H (–)"),
-    );
-    let mut values = Vec::new();
-    for r in 0..24 {
-        for c in 0..24 {
-            let (x, y) = ((f64::from(c) + 0.5) / 24.0, (f64::from(r) + 0.5) / 24.0);
-            let checker = if (r + c) % 2 == 0 { 0.3 } else { -0.3 };
-            values.push((PI * x).cos() * (1.0 - y) + checker * y);
-        }
-    }
-    values[30] = f64::NAN;
-    chart.field = Some(ColourField {
-        label: "p/q (–)".into(),
-        reach: None,
-        x_edges: edges.clone(),
-        y_edges: edges,
-        values,
-    });
-    chart.size = Size { width: 480.0, plot_height: 340.0, equal_units: true };
-    chart
-}
-
 pub(super) fn nothing() -> Chart {
     let series = Series::new("GIMP", vec![(f64::NAN, 1.0), (1.0, -1.0), (f64::INFINITY, 2.0)]);
     Chart::new("Nothing to see", ChartAxis::log10("h (m)"), ChartAxis::log10("error (–)")).with(series)
@@ -163,27 +135,13 @@ fn crowd() -> Chart {
     chart
 }
 
-/// A slender body with units of the same length, and a note at its top.
-fn column() -> Chart {
-    let y_edges: Vec<f64> = steps(20).collect();
-    let values = (0..20).map(|i| pressure(1.0 - (f64::from(i) + 0.5) / 20.0, 0.1) * 2e5).collect();
-    let mut chart =
-        Chart::new("Pressure in the column", ChartAxis::linear("x (m)"), ChartAxis::linear("y (m)"));
-    chart.field =
-        Some(ColourField { label: "p (Pa)".into(), reach: None, x_edges: vec![0.0, 0.1], y_edges, values });
-    chart.size = Size { width: 320.0, plot_height: 360.0, equal_units: true };
-    chart
-}
-
 pub(super) fn gallery() -> Vec<(&'static str, Chart)> {
     vec![
         ("crowd", crowd()),
-        ("column", column()),
         ("convergence", convergence()),
         ("isochrones", isochrones()),
         ("degree", degree()),
         ("work-precision", work_precision()),
-        ("pressure-field", pressure_field()),
         ("nothing", nothing()),
     ]
 }
