@@ -1,7 +1,7 @@
 //! Two states beside each other: inputs that differ first, then accuracy and cost, apart; and the orders and classes of
 //! errors under refinement.
 
-use crate::case::{Case, Quantity};
+use crate::case::Case;
 use crate::golden::compare::{
     CaseChange, Change, Difference, DifferenceGroup, case_changes, cases_apart, compare, groups_of,
 };
@@ -11,7 +11,6 @@ use crate::history::state::{State, StudyState};
 use crate::measure::statistics::spread;
 use oedometer_convergence::{Context, ErrorSeries, SeriesLevel, classify};
 use oedometer_soil::wording::count_of;
-use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Where something went from the first state to the second.
@@ -81,9 +80,6 @@ pub struct StudyComparison {
     pub seconds: Option<[Seconds; 2]>,
     /// What made the values, before and after.
     pub made_by: [Vec<String>; 2],
-    /// Each case in the plane of cost and error, before and after.
-    #[serde(skip)]
-    pub arrows: Vec<Arrow>,
 }
 
 /// Processor time of some cases, s.
@@ -115,17 +111,6 @@ impl Seconds {
         };
         Some([sum(before, after)?, sum(after, before)?])
     }
-}
-
-/// A case in the plane of cost and error.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Arrow {
-    /// Label of the case.
-    pub case: String,
-    /// Steps and error before.
-    pub before: (f64, f64),
-    /// Steps and error after.
-    pub after: (f64, f64),
 }
 
 impl StudyComparison {
@@ -177,7 +162,6 @@ impl StudyComparison {
             orders: order_changes(&before.values, values_after, &differences),
             seconds,
             made_by,
-            arrows: arrows(&before.values, values_after),
         }
     }
 }
@@ -212,25 +196,6 @@ pub(crate) fn compare_states(
         notes.push(format!("neither state contains a study `{study}`"));
     }
     (both, notes)
-}
-
-/// Every case that has steps and an error in both states: the error of the pressure, or of the last quantity there is, at
-/// its last time.
-fn arrows(before: &BTreeMap<GoldenKey, f64>, after: &BTreeMap<GoldenKey, f64>) -> Vec<Arrow> {
-    let in_both: Vec<&GoldenKey> = before.keys().filter(|key| after.contains_key(*key)).collect();
-    let arrow = |of_case: &[&GoldenKey]| {
-        let steps = of_case.iter().find(|key| key.measure == Measure::Steps)?;
-        let rank = |key: &&&GoldenKey| match &key.measure {
-            Measure::Error { quantity, sample, .. } => {
-                Some((*quantity == Quantity::Pressure, key.time, Reverse(*sample)))
-            }
-            _ => None,
-        };
-        let error = of_case.iter().filter(|key| rank(key).is_some()).max_by_key(rank)?;
-        let point = |values: &BTreeMap<GoldenKey, f64>| (values[*steps], values[*error].abs());
-        Some(Arrow { case: steps.case.to_string(), before: point(before), after: point(after) })
-    };
-    in_both.chunk_by(|a, b| a.case == b.case).filter_map(arrow).collect()
 }
 
 /// Errors up to this are round-off.
@@ -402,7 +367,6 @@ mod tests {
             (Trend::Improved, Trend::Regressed, true)
         );
         assert!(!with(|values| (values[3].1, values[2].1) = (1e-3, 300.0)).is_regression());
-        assert_eq!(dearer.arrows[1].after, (500.0, 1e-3));
     }
 
     #[test]
@@ -490,37 +454,6 @@ mod tests {
         let [old, new] = Seconds::of_both(&before, &after).expect("times of both");
         assert_eq!(old, Seconds { median: 22.0, least: 11.0, most: 33.0 });
         assert_eq!(new, Seconds { median: 45.0, least: 44.0, most: 46.0 });
-    }
-
-    #[test]
-    fn an_arrow_is_that_of_the_pressure_at_the_last_output_wherever_it_is_listed() {
-        let of = |rows: &[(Option<f64>, &str, f64)], factor: f64| -> BTreeMap<GoldenKey, f64> {
-            rows.iter().map(|(time, measure, value)| (key("MPM", *time, measure), factor * value)).collect()
-        };
-        let rows = [
-            (Some(10.0), "effective_stress points terzaghi", 1e-1),
-            (None, "steps", 100.0),
-            (Some(0.1), "pressure points terzaghi", 2e-2),
-            (Some(10.0), "pressure points terzaghi", 3e-2),
-            (Some(10.0), "pressure nodes terzaghi", 6e-2),
-            (Some(2.0), "pressure points terzaghi", 4e-2),
-            (Some(10.0), "settlement surface terzaghi", -5e-2),
-        ];
-        let [arrow] =
-            arrows(&of(&rows, 1.0), &of(&rows, 2.0)).try_into().unwrap_or_else(|_| panic!("one case"));
-        assert_eq!((arrow.before, arrow.after), ((100.0, 3e-2), (200.0, 6e-2)));
-        // Without a pressure the last of what there is, by its size; without steps or an error there is none.
-        let settled = |time: f64, value: f64| (Some(time), "settlement surface terzaghi", value);
-        let steps = (None, "steps", 1.0);
-        for (rows, found) in [
-            (vec![steps, settled(0.1, -2.0), settled(2.0, -3.0)], vec![(1.0, 3.0)]),
-            (vec![steps, (Some(2.0), "water balance", -3.0)], vec![]),
-            (vec![settled(2.0, 1.0)], vec![]),
-        ] {
-            let rows = of(&rows, 1.0);
-            let told: Vec<(f64, f64)> = arrows(&rows, &rows).into_iter().map(|arrow| arrow.after).collect();
-            assert_eq!(told, found);
-        }
     }
 
     #[test]

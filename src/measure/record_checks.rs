@@ -181,20 +181,6 @@ pub fn balance_checks(record: &Record, balance: &Balance) -> Vec<RecordCheck> {
     checks
 }
 
-/// Whether a pressure burst in a double-point run of moving points with a conservative continuity: between outputs, or at
-/// the end of a run that became unstable or closed its pores.
-pub fn has_burst(record: &Record) -> bool {
-    let case = &record.case;
-    let is_sound = case.material.continuity == Continuity::Conservative;
-    if !(is_sound && case.column.points.has_two_sets() && deforms(record)) {
-        return false;
-    }
-    let mut seen = record.balance.iter().filter_map(|balance| balance.layers.as_ref()?.largest_pressure);
-    let has_left = matches!(&record.status, Status::Failed(failure)
-        if matches!(failure.kind, FailureKind::Unstable | FailureKind::PoresClosed));
-    has_left || seen.any(|largest| largest > NO_BURST || largest.is_nan())
-}
-
 /// Where volumes follow the deformation, the undrained start has compressed the column by
 /// `q/(E_oed + Q)`, a tenth more than that under any law.
 fn volume_bound(record: &Record) -> f64 {
@@ -443,50 +429,6 @@ mod tests {
         assert!(is(of("cosine-layer", ""), 1e-9), "{:?}", of("cosine-layer", ""));
         let jittered = of("terzaghi", "points.jitter = 0.1");
         assert!(jittered.is_err_and(|why| why.contains("scattered points overlap")));
-    }
-
-    #[test]
-    fn a_burst_is_of_moving_sets_with_a_conservative_continuity_alone() {
-        let text = "title = 't'\nscene = 'xie-leo'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP-SRI']\n\
-                    integrator = ['implicit']\ncells = [4]\ntime_step = [{ growth = 0.3 }]\n";
-        let mut moving = records_of(text).remove(0);
-        moving.case.column.points.sets = 2;
-        let layers = LayerBalance {
-            pore_water: 0.0,
-            water_left: 0.0,
-            water_left_error: 0.0,
-            water_points: 8,
-            largest_pressure: Some(1.5),
-        };
-        moving.balance = vec![Balance { layers: Some(layers), ..moving.balance[0] }; 3];
-        assert!(!has_burst(&moving), "as large as it may be");
-        for place in 0..3 {
-            for largest in [1.51, f64::NAN] {
-                let mut burst = moving.clone();
-                let one = LayerBalance { largest_pressure: Some(largest), ..layers };
-                burst.balance[place].layers = Some(one);
-                assert!(has_burst(&burst), "{largest} at {place}");
-                let changes: [fn(&mut Record); 3] = [
-                    |one| one.case.column.points.sets = 1,
-                    |one| one.case.material.continuity = Continuity::ConstantPorosityGradient,
-                    |one| one.case.scene = &TERZAGHI,
-                ];
-                for change in changes {
-                    let mut other = burst.clone();
-                    change(&mut other);
-                    assert!(!has_burst(&other));
-                }
-            }
-        }
-        for (kind, has_left) in [
-            (FailureKind::Unstable, true),
-            (FailureKind::PoresClosed, true),
-            (FailureKind::TimedOut, false),
-            (FailureKind::Stopped, false),
-        ] {
-            moving.status = Status::Failed(Failure::of_attached(kind, String::new()));
-            assert_eq!(has_burst(&moving), has_left, "{kind:?}");
-        }
     }
 
     #[test]

@@ -14,7 +14,6 @@ pub mod locking;
 pub mod outside_runs;
 pub mod paper;
 pub mod peers;
-pub mod point_sets;
 pub mod points;
 pub mod profiles;
 pub mod published_equations;
@@ -46,7 +45,6 @@ use crate::questions::locking::LOCKING;
 use crate::questions::outside_runs::OUTSIDE_RUNS;
 use crate::questions::paper::PAPER;
 use crate::questions::peers::PEERS;
-use crate::questions::point_sets::POINT_SETS;
 use crate::questions::points::{POINTS, WATER};
 use crate::questions::profiles::PROFILES;
 use crate::questions::setting::SETTING;
@@ -82,7 +80,6 @@ pub static QUESTIONS: &[&Question] = &[
     &CHECKS,
     &OUTSIDE_RUNS,
     &AUDIT,
-    &POINT_SETS,
 ];
 
 /// What studies answer at a place, in the order of the questions.
