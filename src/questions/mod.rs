@@ -6,7 +6,6 @@ pub mod checks;
 pub mod choice;
 pub mod convergence;
 pub mod cost;
-pub mod ends;
 pub mod expected;
 pub mod finding;
 pub mod load_curves;
@@ -37,7 +36,6 @@ use crate::questions::checks::CHECKS;
 use crate::questions::choice::CHOICE;
 use crate::questions::convergence::CONVERGENCE;
 use crate::questions::cost::COST;
-use crate::questions::ends::ENDS;
 use crate::questions::expected::EXPECTED;
 use crate::questions::finding::{Finding, Place, Question};
 use crate::questions::load_curves::LOAD_CURVES;
@@ -75,7 +73,6 @@ pub static QUESTIONS: &[&Question] = &[
     &LOAD_CURVES,
     &PROFILES,
     &STABILITY,
-    &ENDS,
     &UNCERTAINTY,
     &CHECKS,
     &OUTSIDE_RUNS,
