@@ -1,16 +1,11 @@
-//! Explains the error of one case: the dominant norm and place, the other levels of its study, and changes from the
-//! golden values.
+//! Explains the error of one case: the dominant norm and place, and changes from the golden values.
 
-use crate::case::{Case, Norm};
+use crate::case::Norm;
 use crate::golden::compare::{Difference, compare};
-use crate::golden::measure::{GoldenKey, Measure, TimeFactor};
 use crate::golden::{GoldenFile, values_of};
 use crate::judge::error_place::{ErrorPlace, place_of};
-use crate::judge::outside_runs::OutsideRunFinding;
-use crate::judge::paths::{grouped, level_size, paths};
+use crate::judge::paths::grouped;
 use crate::record::{ErrorRow, Record};
-use crate::study::expectation::Axis;
-use oedometer_convergence::{Context, ErrorSeries, classify};
 use oedometer_exact::ExactError;
 
 /// The error of one quantity at one kind of sample, at the output where it is largest.
@@ -26,30 +21,11 @@ pub struct Carrier {
     pub place: Option<ErrorPlace>,
 }
 
-/// The error of the case among its neighbours along one axis.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct LevelSeries {
-    /// What is refined.
-    pub axis: Axis,
-    /// Labels of the levels from coarse to fine.
-    pub labels: Vec<String>,
-    /// Errors, where they are known: this case's own and the golden ones of the others.
-    pub errors: Vec<Option<f64>>,
-    /// Place of this case among them.
-    pub own: usize,
-    /// Class of the series.
-    pub class: &'static str,
-    /// Its reason.
-    pub reason: String,
-}
-
 /// The explanation of a case.
 #[derive(Default, Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Explanation {
     /// Carriers, the largest error first.
     pub carriers: Vec<Carrier>,
-    /// Series of the first carrier's error, one an axis that the study refines.
-    pub levels: Vec<LevelSeries>,
     /// Whether its inputs are others than those of its golden values.
     pub has_other_inputs: bool,
     /// Differences from the golden values of this case.
@@ -58,8 +34,6 @@ pub struct Explanation {
     pub agreeing: usize,
     /// Whether there are golden values.
     pub has_golden: bool,
-    /// How the run of another program went.
-    pub outside_run: Option<OutsideRunFinding>,
 }
 
 /// Explains a record. `focus`, a quantity and a sample as they begin the name of a golden value, puts their carrier first.
@@ -69,7 +43,6 @@ pub struct Explanation {
 /// When a reference refuses the case.
 pub fn explain(
     record: &Record,
-    siblings: &[&Case],
     golden: Option<&(GoldenFile, Vec<String>)>,
     focus: Option<&str>,
 ) -> Result<Explanation, ExactError> {
@@ -82,19 +55,13 @@ pub fn explain(
     let label = record.case.label();
     let has_other_inputs = golden.is_some_and(|(_, others)| others.contains(&label));
     let golden = golden.map(|(golden, _)| golden);
-    let levels = match (carriers.first(), golden) {
-        (Some(first), Some(golden)) => levels_of(record, siblings, golden, &first.row),
-        _ => Vec::new(),
-    };
     let (differences, agreeing) = golden.map_or((Vec::new(), 0), |golden| differences_of(record, golden));
     Ok(Explanation {
         carriers,
-        levels,
         has_other_inputs,
         differences,
         agreeing,
         has_golden: golden.is_some(),
-        outside_run: OutsideRunFinding::new(record),
     })
 }
 
@@ -115,47 +82,6 @@ fn carriers_of(record: &Record) -> Result<Vec<Carrier>, ExactError> {
         .collect()
 }
 
-/// The case's error among the golden ones of the cases that differ from it along one axis only.
-fn levels_of(record: &Record, siblings: &[&Case], golden: &GoldenFile, row: &ErrorRow) -> Vec<LevelSeries> {
-    // Paths group records; a sibling that was not run is a record without results.
-    let empty = |case: &&Case| Record {
-        case: (*case).clone(),
-        hash: case.hash(),
-        errors: Vec::new(),
-        snapshots: Vec::new(),
-        ..record.clone()
-    };
-    let mut records: Vec<Record> = siblings.iter().filter(|case| **case != &record.case).map(empty).collect();
-    records.push(record.clone());
-    let is_own = |other: &Record| other.hash == record.hash;
-    let error = |other: &Record| {
-        let time = Some(TimeFactor(row.time_factor));
-        let key = GoldenKey { case: other.case.label().into(), time, measure: Measure::of_error(row)? };
-        if is_own(other) { Some(row.value.abs()) } else { golden.values.get(&key).map(|value| value.abs()) }
-    };
-    let level_series = |axis: Axis| {
-        let label = |case: &Case| match axis {
-            Axis::PointsPerCell => format!("{} points per cell", case.points_per_cell),
-            _ => format!("{} cells", case.cells),
-        };
-        let all = paths(&records, axis);
-        let path = all.iter().find(|path| path.records.iter().any(|other| is_own(other)))?;
-        let errors: Vec<Option<f64>> = path.records.iter().map(|other| error(other)).collect();
-        let sizes = path.records.iter().map(|other| level_size(other, axis));
-        let known = sizes.zip(&errors).filter_map(|(size, error)| Some((size, (*error)?)));
-        let found = classify(&ErrorSeries::from_pairs(&known.collect::<Vec<_>>()), &Context::default());
-        Some(LevelSeries {
-            axis,
-            labels: path.records.iter().map(|other| label(&other.case)).collect(),
-            own: path.records.iter().position(|other| is_own(other)).unwrap_or(0),
-            errors,
-            class: found.class.name(),
-            reason: found.reason,
-        })
-    };
-    [Axis::Cells, Axis::PointsPerCell].into_iter().filter_map(level_series).collect()
-}
-
 /// Differences from the golden values of this case alone, and how many agree.
 fn differences_of(record: &Record, golden: &GoldenFile) -> (Vec<Difference>, usize) {
     let label = record.case.label();
@@ -171,6 +97,7 @@ fn differences_of(record: &Record, golden: &GoldenFile) -> (Vec<Difference>, usi
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
+    use crate::golden::measure::GoldenKey;
     use crate::case::quantity::Quantity;
 
     #[test]

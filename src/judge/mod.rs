@@ -6,7 +6,6 @@
 pub mod case_verdicts;
 pub mod error_place;
 pub mod explanation;
-pub mod outside_runs;
 pub mod path_context;
 pub mod path_labels;
 pub mod paths;

@@ -1,9 +1,10 @@
 //! How did attached solvers run? How each run ended, what it took, and whether its repeats agree.
 
 use crate::campaign::taken_over::TakenOver;
-use crate::judge::outside_runs::{BUSY, OutsideRunFinding, outside_runs};
 use crate::judge::study_results::StudyResults;
+use crate::measure::statistics::{WallSpread, spread};
 use crate::questions::finding::{Finding, Place, Question};
+use crate::record::{Record, WallSample};
 use crate::render::page::Block;
 use crate::render::table::{Cell, Mood, Table, columns};
 
@@ -15,6 +16,9 @@ pub static OUTSIDE_RUNS: Question = Question {
     places: &[Place::Study],
     ask: |studies| Ok(ask(studies)),
 };
+
+/// Ratio of wall to processor time from which the machine was busy or the solver waited.
+const BUSY: f64 = 2.0;
 
 /// Every number of the sentence.
 #[derive(serde::Serialize)]
@@ -31,49 +35,63 @@ struct Facts {
 
 fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
     let [one] = studies else { return None };
-    let runs = outside_runs(one.records);
-    if runs.is_empty() {
-        return None;
-    }
-    let count = |is: fn(&OutsideRunFinding) -> bool| runs.iter().filter(|run| is(run)).count();
+    let table = table(one.records).unless_empty()?.notes(TakenOver::sentences(&one.check.taken_over));
+    let of_others = || one.records.iter().filter(|record| record.outside_run().is_some());
     let facts = Facts {
-        runs: runs.len(),
-        ended: count(|run| !run.failed),
-        busy: count(|run| run.busy),
+        runs: table.rows.len(),
+        ended: of_others().filter(|record| record.status.failure().is_none()).count(),
+        busy: of_others().filter(|record| is_busy(&record.wall)).count(),
         busy_ratio: BUSY,
     };
-    let table = table(&runs).notes(TakenOver::sentences(&one.check.taken_over));
     Some(OUTSIDE_RUNS.answer([one.study.name.as_str()], &facts).with(Block::Table(table)))
 }
 
 /// One row per run: how it ended, what it took, and whether its repeats agree.
-pub fn table(runs: &[OutsideRunFinding]) -> Table {
+pub fn table(records: &[Record]) -> Table {
     let header = "case | ended | made by | > wall, least [s] | > wall, median [s] | > processor [s] | > memory [MB] \
                   | > by its own account [s] | > repeats differ by";
-    Table::of("Runs of attached solvers", columns(header), runs.iter().map(row)).file("outside-runs").note(
-        "wall time: least and median over the repeats; processor time and memory: of the solver and of the processes that \
-         it waited for",
-    )
+    Table::of("Runs of attached solvers", columns(header), records.iter().filter_map(row))
+        .file("outside-runs")
+        .note(
+            "wall time: least and median over the repeats; processor time and memory: of the solver and of the processes \
+             that it waited for",
+        )
 }
 
-fn row(run: &OutsideRunFinding) -> Vec<Cell> {
-    let mood = match (run.failed, run.skipped) {
-        (false, _) => Mood::Pass,
-        (true, true) => Mood::Note,
-        (true, false) => Mood::Fail,
+fn row(record: &Record) -> Option<Vec<Cell>> {
+    let about = record.outside_run()?;
+    let mood = match record.status.failure() {
+        None => Mood::Pass,
+        Some(_) if record.status.is_skipped() => Mood::Note,
+        Some(_) => Mood::Fail,
     };
+    let wall = over(&record.wall, |sample| Some(sample.seconds));
+    let median = |field| over(&record.wall, field).map(|spread| spread.median);
+    let memory = over(&record.wall, |sample| sample.peak_memory.map(|bytes| 1e-6 * bytes as f64));
     let not_told = "the system does not report it";
-    vec![
-        Cell::Code(run.case.clone()),
-        Cell::Verdict(mood, run.status.clone()),
-        run.made_by.as_str().into(),
-        Cell::of(run.least_wall, Cell::Seconds, "not run"),
-        Cell::of(run.median_wall, Cell::Seconds, "not run"),
-        Cell::of(run.processor, Cell::Seconds, not_told),
-        Cell::of(run.memory, Cell::Number, not_told),
-        Cell::of(run.reported, Cell::Seconds, "the solver does not report it"),
-        Cell::of(run.repeats_differ_by, Cell::Error, "run once"),
-    ]
+    Some(vec![
+        Cell::Code(record.case.label()),
+        Cell::Verdict(mood, record.status.name()),
+        about.made_by().replace('`', "").into(),
+        Cell::of(wall.map(|wall| wall.minimum), Cell::Seconds, "not run"),
+        Cell::of(wall.map(|wall| wall.median), Cell::Seconds, "not run"),
+        Cell::of(median(|sample| sample.cpu_seconds), Cell::Seconds, not_told),
+        Cell::of(memory.map(|memory| memory.maximum), Cell::Number, not_told),
+        Cell::of(median(|sample| sample.own_seconds), Cell::Seconds, "the solver does not report it"),
+        Cell::of(about.repeats_differ_by, Cell::Error, "run once"),
+    ])
+}
+
+/// The spread of a quantity over the samples that have it.
+fn over(samples: &[WallSample], field: fn(&WallSample) -> Option<f64>) -> Option<WallSpread> {
+    spread(&samples.iter().filter_map(field).collect::<Vec<_>>())
+}
+
+/// Whether the wall times of a run are far above its processor times.
+fn is_busy(samples: &[WallSample]) -> bool {
+    let wall = over(samples, |sample| Some(sample.seconds));
+    wall.zip(over(samples, |sample| sample.cpu_seconds))
+        .is_some_and(|(wall, cpu)| wall.median > BUSY * cpu.median)
 }
 
 #[cfg(test)]
@@ -81,7 +99,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::solved;
     use crate::case::planned::Tier;
-    use crate::record::{AttachedRun, Status, WallSample};
+    use crate::record::{AttachedRun, Status};
     use oedometer_problem::outcome::{Failure, FailureKind};
 
     #[test]
@@ -116,5 +134,17 @@ mod tests {
         assert!(ends[1].starts_with("• ") && ends[2].starts_with("✗ "), "{ends:?}");
         assert_eq!(table.rows[1][3], Cell::missing("not run"));
         assert_eq!(table.rows[2][5], Cell::missing("the system does not report it"));
+    }
+
+    #[test]
+    fn a_run_is_busy_where_its_wall_time_is_far_above_the_processors() {
+        let sample = |seconds: f64, cpu: Option<f64>| WallSample {
+            seconds,
+            cpu_seconds: cpu,
+            ..WallSample::default()
+        };
+        assert!(is_busy(&[sample(2.1, Some(1.0))]));
+        assert!(!is_busy(&[sample(1.9, Some(1.0))]));
+        assert!(!is_busy(&[sample(9.0, None)]) && !is_busy(&[]));
     }
 }

@@ -1,5 +1,5 @@
-//! `oedometer explain`: which norm and place the error of a case comes from, how it compares with the other levels,
-//! what changed against the golden values, and the command that runs it again.
+//! `oedometer explain`: which norm and place the error of a case comes from, what changed against the golden values, and the
+//! command that runs it again.
 
 use crate::campaign::case_runner::{CaseRunner, is_stopped};
 use crate::campaign::stop;
@@ -56,8 +56,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         Err(GoldenError::Missing(_)) => None,
         Err(error) => return Err(Ended::with(Exit::Golden, error.to_string())),
     };
-    let siblings = study.cases(Tier::Full);
-    let explained = explain(&record, &siblings, golden.as_ref(), focus)?;
+    let explained = explain(&record, golden.as_ref(), focus)?;
     if arguments.format == TableFormat::Json {
         print_data(&json_of(&explained)?)?;
     } else {

@@ -1,25 +1,16 @@
-//! Tables of an explained case: where its errors are, its levels, and its golden values.
+//! Tables of an explained case: where its errors are, and its golden values.
 
 use crate::case::quantity::Quantity;
-use crate::judge::explanation::{Carrier, Explanation, LevelSeries};
-use crate::judge::outside_runs::OutsideRunFinding;
+use crate::judge::explanation::Explanation;
 use crate::record::Record;
-use crate::render::number;
-use crate::render::table::{Cell, Mood, Table, columns};
+use crate::render::table::{Cell, Table, columns};
 use crate::report::tables::golden_changes::differences_table;
-use oedometer_soil::wording::{count_of, short};
+use oedometer_soil::wording::short;
 
-/// Places of the errors, levels and changes of a case.
+/// Places of the errors and changes of a case.
 pub fn tables_of(record: &Record, explanation: &Explanation) -> Vec<Table> {
-    let mut tables = Vec::new();
-    tables.push(carriers_table(record, explanation));
-    if let Some(first) = explanation.carriers.first() {
-        tables.extend(explanation.levels.iter().map(|series| levels_table(first, series)));
-    }
-    if !explanation.differences.is_empty() {
-        tables.push(differences_table(&explanation.differences));
-    }
-    tables
+    let changes = differences_table(&explanation.differences).unless_empty();
+    std::iter::once(carriers_table(record, explanation)).chain(changes).collect()
 }
 
 /// One sentence on the golden values of a case, and another one where its inputs are not those of then.
@@ -77,12 +68,12 @@ fn carriers_table(record: &Record, explanation: &Explanation) -> Table {
     .note(format!(
         "relative errors against {reference}, largest first; settlement as s/s_exact − 1; values in Pa and m"
     ));
-    table.notes(attached_notes(record, explanation.outside_run.as_ref()))
+    table.notes(attached_notes(record))
 }
 
-/// Sentences on the run of an attached solver: how it failed, what it is, what it took; none for other cases.
-pub fn attached_notes(record: &Record, found: Option<&OutsideRunFinding>) -> Vec<String> {
-    let (Some(about), Some(found)) = (record.outside_run(), found) else { return Vec::new() };
+/// Sentences on the run of an attached solver: how it failed, and what it is; none for other cases.
+pub fn attached_notes(record: &Record) -> Vec<String> {
+    let Some(about) = record.outside_run() else { return Vec::new() };
     let mut notes: Vec<String> = record.status.failure().map(ToString::to_string).into_iter().collect();
     let version = about.version.as_ref().map_or(String::new(), |version| format!(", version {version}"));
     notes.push(if about.command.is_empty() {
@@ -90,58 +81,11 @@ pub fn attached_notes(record: &Record, found: Option<&OutsideRunFinding>) -> Vec
     } else {
         format!("run by `{}`{version}", about.command.join(" "))
     });
-    notes.extend(times(found));
     let most = about.repeats_differ_by;
     notes.extend(most.map(|most| format!("results of repeated runs differ by at most {}", short(most))));
     notes.extend(about.notes.iter().cloned());
     notes.extend(about.taken.iter().map(|taken| format!("taken: {taken}")));
     notes
-}
-
-/// Wall times with processor time, memory and load.
-fn times(found: &OutsideRunFinding) -> Option<String> {
-    let (least, median) = found.least_wall.zip(found.median_wall)?;
-    let mut parts = vec![
-        format!(
-            "wall time at least {} s, median {} s of {}",
-            short(least),
-            short(median),
-            count_of(found.timed, "run", "runs")
-        ),
-        found.processor.map_or("the system does not report processor time".to_owned(), |seconds| {
-            format!("processor {} s", short(seconds))
-        }),
-        found.memory.map_or("the system does not report memory".to_owned(), |megabytes| {
-            format!("memory at most {} MB", short(megabytes))
-        }),
-    ];
-    parts.extend(found.reported.map(|seconds| format!("{} s by its own account", short(seconds))));
-    parts.extend(found.load.map(|load| format!("load of the machine {}", short(load))));
-    parts.extend(found.busy.then(|| "the machine was busy or it waited: compare processor times".to_owned()));
-    Some(parts.join(", "))
-}
-
-fn levels_table(first: &Carrier, series: &LevelSeries) -> Table {
-    let rows = series.labels.iter().zip(&series.errors).enumerate().map(|(place, (label, error))| {
-        let own = place == series.own;
-        vec![
-            label.as_str().into(),
-            Cell::of(*error, Cell::Error, "no golden value"),
-            if own { Cell::Verdict(Mood::Note, "this case".to_owned()) } else { "golden".into() },
-        ]
-    });
-    Table::of(
-        format!(
-            "{} {} at T_v = {} over {}",
-            first.row.quantity.name(),
-            first.row.sample.name(),
-            number::number(first.row.time_factor),
-            series.axis.name().replace('_', " ")
-        ),
-        columns("level | > error | from"),
-        rows,
-    )
-    .note(format!("{}: {}", series.class, series.reason))
 }
 
 #[cfg(test)]
@@ -151,8 +95,9 @@ mod tests {
     use crate::case::quantity::{Norm, Sample};
     use crate::golden::compare::{Change, Difference};
     use crate::judge::error_place::ErrorPlace;
+    use crate::judge::explanation::Carrier;
     use crate::record::ErrorRow;
-    use crate::record::{AttachedRun, Status, WallSample};
+    use crate::record::{AttachedRun, Status};
     use oedometer_problem::outcome::{Failure, FailureKind};
 
     #[test]
@@ -236,46 +181,30 @@ mod tests {
     }
 
     #[test]
-    fn a_run_of_a_solver_is_told_with_its_command_and_what_the_system_does_not_tell() {
-        let sample = |seconds: f64, cpu: Option<f64>, load: f64| WallSample {
-            seconds,
-            cpu_seconds: cpu,
-            load: Some(load),
-            ..WallSample::default()
-        };
+    fn a_run_of_a_solver_is_told_with_its_command_or_why_it_failed() {
         let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
                     integrator = ['implicit']\ncells = [2]\n";
-        let notes_of = |record: &Record| attached_notes(record, OutsideRunFinding::new(record).as_ref());
-        let mut record = crate::campaign::runner::records_of(text).remove(0);
-        assert_eq!(notes_of(&record), [""; 0]);
+        let mut record = records_of(text).remove(0);
+        assert_eq!(attached_notes(&record), [""; 0]);
         record.outside = Some(AttachedRun::default());
         let mut failed = record.clone();
         let (kind, reason) = (FailureKind::TimedOut, "why".to_owned());
         failed.status = Status::Failed(Failure { kind, step: 0, time: 0.0, growth: None, reason });
-        record.wall = vec![sample(5.0, Some(2.0), 3.0), sample(6.0, Some(2.5), 1.5)];
-        failed.wall = vec![sample(1.0, None, 0.5)];
         let about = record.outside.as_mut().expect("another program's");
         (about.command, about.version) = (["sh", "{case}"].map(str::to_owned).into(), Some("2.1".to_owned()));
         (about.repeats_differ_by, about.notes) = (Some(1e-9), vec!["a note".to_owned()]);
         about.taken = vec!["p from pressure".to_owned()];
         assert_eq!(
-            notes_of(&record),
+            attached_notes(&record),
             [
                 "run by `sh {case}`, version 2.1",
-                "wall time at least 5 s, median 5.5 s of 2 runs, processor 2.25 s, the system does not report memory, load of \
-                 the machine 3, the machine was busy or it waited: compare processor times",
                 "results of repeated runs differ by at most 1e-9",
                 "a note",
                 "taken: p from pressure"
             ]
         );
-        let notes = notes_of(&failed);
-        assert!(
-            notes[0].contains("why") && notes[1] == "read from existing files; nothing was run",
-            "{notes:?}"
-        );
-        let told = "wall time at least 1 s, median 1 s of 1 run, the system does not report processor time, the system does not \
-                    report memory, load of the machine 0.5";
-        assert_eq!(notes[2..], [told]);
+        let [why, how] = &attached_notes(&failed)[..] else { panic!("two notes") };
+        assert!(why.contains("why"), "{why}");
+        assert_eq!(how, "read from existing files; nothing was run");
     }
 }
