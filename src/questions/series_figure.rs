@@ -19,8 +19,6 @@ const NEAR: f64 = 0.3;
 const SAME_FLOOR: f64 = 1.1;
 /// Most lines of a figure with several soils, and with one.
 const MOST_LINES: [usize; 2] = [14, 60];
-/// Most series of a class that a caption names; the table has all.
-const MOST_NAMED: usize = 3;
 
 /// A figure per error of a table, side by side; none where no path has three levels.
 pub fn figures(found: &SeriesTable<'_>) -> Vec<Figure> {
@@ -71,13 +69,12 @@ pub fn figure(found: &SeriesTable<'_>, measured: Measured) -> Option<Figure> {
         let cause = found.model_difference.map_or_else(String::new, |cause| format!(": {cause}"));
         Rule { at, label: format!("plateau of {whose}{cause}") }
     }));
-    let part = match all.len() - lines.len() {
+    let caption = match all.len() - lines.len() {
         0 => String::new(),
-        more => format!(" {} of other soils in the table.", count_of(more, "more series", "more series")),
+        more => format!("{} of other soils in the table.", count_of(more, "more series", "more series")),
     };
-    let caption = if found.has_orders() { classes(lines.iter().zip(&names)) } else { String::new() };
     let name = format!("{}-{}-{}", found.axis.name(), quantity.name(), sample.name());
-    Some(Figure::new(crate::render::page::slug(&name), chart, caption + &part))
+    Some(Figure::new(crate::render::page::slug(&name), chart, caption))
 }
 
 /// What the lines show: over the mesh which ends with the least error, over the step which is of the highest order.
@@ -157,36 +154,6 @@ fn shared_floor(lines: &[&Series<'_>]) -> Option<(f64, Option<usize>)> {
     }
 }
 
-/// The series of a figure by their class: a few by their names and orders, many by their number.
-fn classes<'s, 'a: 's>(lines: impl Iterator<Item = (&'s &'s Series<'a>, &'s String)>) -> String {
-    let named = |(one, name): &(&&Series<'_>, &String)| {
-        let order = one.order().map_or(String::new(), |order| format!(" (order {})", number::order(order)));
-        format!("{name}{order}")
-    };
-    let groups = grouped(lines, |(one, _)| one.class().map_or("two levels", |class| class.name()));
-    let parts = groups.into_iter().map(|(class, lines)| {
-        let told = if lines.len() <= MOST_NAMED {
-            lines.iter().map(named).collect::<Vec<_>>().join("; ")
-        } else {
-            format!("{} series{}", lines.len(), orders_of(lines.iter().filter_map(|(one, _)| one.order())))
-        };
-        format!("*{class}*: {told}")
-    });
-    parts.collect::<Vec<_>>().join(". ") + "."
-}
-
-/// The least and the largest of some orders, in brackets; nothing where there is none.
-fn orders_of(orders: impl Iterator<Item = f64>) -> String {
-    let ends = orders.fold(None, |ends: Option<(f64, f64)>, order| {
-        let (least, most) = ends.unwrap_or((order, order));
-        Some((least.min(order), most.max(order)))
-    });
-    let told = ends.map(|(least, most)| [least, most].map(number::order));
-    told.map_or(String::new(), |[least, most]| {
-        if least == most { format!(" (order {least})") } else { format!(" (orders {least} to {most})") }
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -263,8 +230,7 @@ mod tests {
             let results = StudyResults::new(&study, &records, Tier::Full);
             let found = SeriesTable::new(&results, Axis::Cells).expect("paths");
             let figure = &figures(&found)[0];
-            let more = figure.caption.split(". ").last().unwrap_or_default().to_owned();
-            (figure.chart.series.len(), more)
+            (figure.chart.series.len(), figure.caption.clone())
         };
         assert_eq!(shown("porosity = [0.3, 0.4]\n").0, 4);
         let (lines, more) = shown("porosity = [0.3, 0.32, 0.34, 0.36, 0.38, 0.4, 0.42, 0.44]\n");
@@ -274,12 +240,5 @@ mod tests {
             shown(&format!("jitter = [{all}]\n")).0
         };
         assert_eq!([jitter(7), jitter(8)], [14, 2], "the plain points are drawn");
-    }
-
-    #[test]
-    fn a_caption_gives_the_range_of_many_orders() {
-        assert_eq!(orders_of([2.0, 1.0, 1.5].into_iter()), " (orders 1.00 to 2.00)");
-        assert_eq!(orders_of([2.0; 4].into_iter()), " (order 2.00)");
-        assert_eq!(orders_of(std::iter::empty()), "");
     }
 }

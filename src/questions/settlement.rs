@@ -52,22 +52,20 @@ fn answer(study: &str, runs: &[RunSettlements]) -> Option<Finding> {
     let (run, others, reference) = (first.run.clone(), runs.len() - 1, first.reference.clone());
     let errors = runs.iter().flat_map(|of_run| &of_run.rows).filter_map(|row| row.error);
     let largest_error = errors.map(f64::abs).reduce(larger);
-    let shown = tables(runs).into_iter().enumerate().map(|(place, table)| match place {
-        0 => table.file("settlement"),
-        _ => table.file(format!("settlement-{}", place + 1)),
-    });
-    let shown: Vec<Table> = shown.collect();
     let finding = SETTLEMENT.answer([study], &Facts { run, others, reference, largest_error });
-    Some(shown.into_iter().fold(finding, |finding, table| finding.with(Block::Table(table))))
+    Some(finding.with(Block::Table(table(runs))))
 }
 
 /// Most problems of a study whose settlements are listed: of more nobody reads them.
 const MOST_PROBLEMS: usize = 4;
 
 /// The settlement of one problem at every output.
+#[derive(Clone)]
 struct RunSettlements {
     /// Label of the run.
     run: String,
+    /// What is unusual about its soil and geometry.
+    variant: String,
     /// Reference.
     reference: String,
     /// Outputs, in the order of their times.
@@ -75,7 +73,7 @@ struct RunSettlements {
 }
 
 /// The settlement at one output.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct SettlementRow {
     /// Time, s.
     seconds: f64,
@@ -128,50 +126,28 @@ fn settlements(study: &Study, records: &[Record]) -> Result<Vec<RunSettlements>,
             })
         };
         let rows = case.time_factors.iter().map(row).collect::<Result<_, _>>()?;
-        Ok(RunSettlements { run: case.label(), reference: reference.name().to_owned(), rows })
+        let (run, variant) = (case.label(), case.variant());
+        Ok(RunSettlements { run, variant, reference: reference.name().to_owned(), rows })
     })
     .collect()
 }
 
 const HEADER: &str = "> time | > T_v | > degree of consolidation U | > exact, mm | > this run, mm | > error";
 
-/// The tables: one per run, or, where each run has a single output, one with a row per run.
-fn tables(all: &[RunSettlements]) -> Vec<Table> {
-    match all {
-        [_, _, ..] if all.iter().all(|of_run| of_run.rows.len() == 1) => vec![table_of_runs(all)],
-        _ => all.iter().map(table_of_run).collect(),
+/// A row per output: date, time factor, degree of consolidation, settlement exact and of the run; where there are several runs,
+/// with what tells them apart.
+fn table(all: &[RunSettlements]) -> Table {
+    let rows = all.iter().flat_map(|of_run| of_run.rows.iter().map(move |row| (of_run, row)));
+    if let [only] = all {
+        let title = format!("Settlement of {}", only.run);
+        return Table::of(title, columns(HEADER), rows.map(|(_, row)| cells_of(row))).file("settlement");
     }
-}
-
-/// One table with a row per run: the title has the words that the labels of all runs share, a row has the others.
-fn table_of_runs(all: &[RunSettlements]) -> Table {
-    let is_shared = |part: &&str| all.iter().all(|of_run| parts_of(&of_run.run).contains(part));
-    let shared: Vec<&str> = parts_of(&all[0].run).into_iter().filter(is_shared).collect();
-    let rows = all.iter().flat_map(|of_run| {
-        let others: Vec<&str> =
-            parts_of(&of_run.run).into_iter().filter(|part| !shared.contains(part)).collect();
-        let with_run = move |row: &SettlementRow| {
-            let mut cells = vec![Cell::from(others.join(", "))];
-            cells.extend(cells_of(row));
-            cells
-        };
-        of_run.rows.iter().map(with_run).collect::<Vec<_>>()
+    let rows = rows.map(|(of_run, row)| {
+        std::iter::once(Cell::from(of_run.variant.as_str())).chain(cells_of(row)).collect()
     });
-    let title = format!("Settlement of {}", shared.join(" "));
-    Table::of(title, columns(&format!("problem | {HEADER}")), rows)
-}
-
-/// The parts of a label: its words, and what stands in parentheses, which commas separate.
-fn parts_of(label: &str) -> Vec<&str> {
-    let (words, variant) = label.split_once(" (").unwrap_or((label, ""));
-    let variant = variant.trim_end_matches(')').split(", ").filter(|part| !part.is_empty());
-    words.split(' ').chain(variant).collect()
-}
-
-/// A row per output: date, time factor, degree of consolidation, settlement exact and of the run.
-fn table_of_run(found: &RunSettlements) -> Table {
-    let rows = found.rows.iter().map(cells_of);
-    Table::of(format!("Settlement of {}", found.run), columns(HEADER), rows)
+    let run = all[0].run.split(" (").next().unwrap_or_default();
+    let title = format!("Settlement of {run}");
+    Table::of(title, columns(&format!("problem | {HEADER}")), rows).file("settlement")
 }
 
 fn cells_of(row: &SettlementRow) -> Vec<Cell> {
@@ -251,9 +227,14 @@ mod tests {
             error,
         };
         let rows = vec![row(365.0, Some(0.4567), Some(-0.01)), row(40.0, None, None)];
-        let found = RunSettlements { run: "MPM".to_owned(), reference: "terzaghi".to_owned(), rows };
+        let found = RunSettlements {
+            run: "MPM".to_owned(),
+            variant: String::new(),
+            reference: "terzaghi".to_owned(),
+            rows,
+        };
         let shown: Vec<Vec<String>> =
-            table_of_run(&found).rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
+            table(&[found.clone()]).rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
         assert_eq!(shown[0], ["365 days", "0.08536", "45.7 %", "33.8", "33.46", "-1.00 %"]);
         assert_eq!(shown[1], ["40 days", "0.08536", "–", "33.8", "–", "–"]);
         let answer = answer("s", &[found]).expect("a run");
@@ -262,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_of_one_output_share_a_table_with_what_tells_them_apart() {
+    fn several_runs_share_a_table_with_what_tells_them_apart() {
         let row = |time_factor: f64| SettlementRow {
             seconds: 86400.0,
             time_factor,
@@ -272,23 +253,17 @@ mod tests {
             error: Some(0.01),
         };
         let of_run = |ratio: &str, outputs: &[f64]| RunSettlements {
-            run: format!("MPM implicit cells=16 (u-p, ν {ratio})"),
+            run: format!("MPM implicit cells=16 (ν {ratio})"),
+            variant: format!("ν {ratio}"),
             reference: "terzaghi".to_owned(),
             rows: outputs.iter().copied().map(row).collect(),
         };
-        let several = tables(&[of_run("0.3", &[0.1]), of_run("0.4", &[0.1])]);
-        let [table] = &several[..] else { panic!("{} tables", several.len()) };
-        assert_eq!(table.title, "Settlement of MPM implicit cells=16 u-p");
+        let both = table(&[of_run("0.3", &[0.1, 0.2]), of_run("0.4", &[0.1])]);
+        assert_eq!(both.title, "Settlement of MPM implicit cells=16");
         let shown: Vec<Vec<String>> =
-            table.rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
+            both.rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
         assert_eq!(shown[0], ["ν 0.3", "1 day", "0.1", "–", "33.8", "34.14", "1.00 %"]);
-        assert_eq!((shown.len(), shown[1][0].as_str()), (2, "ν 0.4"));
-        // Two outputs of a run, and a single run, keep a table of their own.
-        assert_eq!(tables(&[of_run("0.3", &[0.1, 0.2]), of_run("0.4", &[0.1])]).len(), 2);
-        assert_eq!(
-            tables(&[of_run("0.3", &[0.1])])[0].title,
-            "Settlement of MPM implicit cells=16 (u-p, ν 0.3)"
-        );
-        assert!(tables(&[]).is_empty());
+        assert_eq!([&*shown[1][2], &*shown[2][0]], ["0.2", "ν 0.4"]);
+        assert_eq!(table(&[of_run("0.3", &[0.1])]).title, "Settlement of MPM implicit cells=16 (ν 0.3)");
     }
 }

@@ -109,7 +109,7 @@ fn table(all: &[QuantityWithin]) -> Table {
     let mut rows = Vec::new();
     let choices = all.iter().flat_map(|asked| asked.bounds.iter().filter_map(|bound| bound.choice.as_ref()));
     let integrators =
-        distinct(choices.chain(all.iter().map(|asked| &asked.best)).map(|one| one.integrator.as_str()));
+        distinct(choices.chain(all.iter().map(|asked| &asked.best)).map(|one| one.integrator));
     let shared = if let [only] = integrators[..] { Some(only) } else { None };
     for asked in all {
         for (place, bound) in asked.bounds.iter().enumerate() {
@@ -130,7 +130,7 @@ fn table(all: &[QuantityWithin]) -> Table {
         has("•").then(|| "•: not confirmed by a finer mesh".to_owned()),
         has("≥").then(|| "≥: no longer step was tried".to_owned()),
     ];
-    let notes: Vec<String> = notes.into_iter().flatten().chain(far_words(all)).collect();
+    let notes: Vec<String> = notes.into_iter().flatten().collect();
     let everywhere =
         if all[0].problems > 1 { format!(" in all {} problems", all[0].problems) } else { String::new() };
     let header = "error of | > bound | method | > cells | > step | > largest | > at T_v";
@@ -148,7 +148,7 @@ fn row(
     is_within: bool,
     shared: Option<&str>,
 ) -> Vec<Cell> {
-    let integrator = match &*choice.integrator {
+    let integrator = match choice.integrator {
         own if own.is_empty() || shared == Some(own) => String::new(),
         integrator => format!(", {integrator}"),
     };
@@ -178,33 +178,8 @@ fn row(
     ]
 }
 
-/// Methods that a note on those far off names.
-const MOST_NAMED: usize = 3;
-
-/// The methods that are far off on their finest mesh, in words; `None` where none is.
-fn far_words(all: &[QuantityWithin]) -> Option<String> {
-    let far =
-        all.iter().flat_map(|asked| asked.far.iter().map(move |one| (words::quantity(asked.quantity), one)));
-    let methods = grouped(far, |(_, one)| (one.method.as_str(), one.cells));
-    let named = methods.iter().take(MOST_NAMED).map(|((method, cells), errors)| {
-        let errors =
-            errors.iter().map(|(quantity, one)| format!("{quantity} {}", number::percent(one.error)));
-        format!("{method} on {cells} ({})", errors.collect::<Vec<_>>().join(", "))
-    });
-    let named = named.collect::<Vec<_>>().join(", ");
-    let more = match methods.len().saturating_sub(MOST_NAMED) {
-        0 => String::new(),
-        more => format!(" and {more} more"),
-    };
-    let far = number::number(100.0 * FAR);
-    (!methods.is_empty()).then(|| format!("off by more than {far} % on the most cells: {named}{more}"))
-}
-
 /// Bounds for which the cheapest choice is looked for.
 const BOUNDS: [f64; 2] = [0.01, 0.001];
-
-/// Error on the finest mesh beyond which a method is far off.
-const FAR: f64 = 0.1;
 
 /// The quantities that a user asks for, in their order; a displacement only where nothing settles.
 const ASKED: [Quantity; 5] = [
@@ -222,16 +197,12 @@ pub struct QuantityWithin {
     pub quantity: Quantity,
     /// Places at which it is compared.
     pub sample: Sample,
-    /// Reference.
-    pub reference: String,
     /// Problems that every choice solves: soils, loads and geometries.
     pub problems: usize,
     /// The bounds, the largest first.
     pub bounds: Vec<BoundWithin>,
     /// The choice with the least error.
     pub best: WithinFinding,
-    /// Methods that are off by more than a tenth on their finest mesh, the worst first.
-    pub far: Vec<FarMethod>,
 }
 
 /// A bound and the cheapest choice within it.
@@ -243,31 +214,18 @@ pub struct BoundWithin {
     pub choice: Option<WithinFinding>,
 }
 
-/// A method that stays far from the exact solution on its finest mesh.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FarMethod {
-    /// Method, or name of another solver.
-    pub method: String,
-    /// Cells over the height.
-    pub cells: usize,
-    /// Its least error there, over integrators and steps.
-    pub error: f64,
-}
-
 /// Method, mesh and step, with the largest error over all outputs and problems.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WithinFinding {
     /// Method, or name of another solver.
     pub method: String,
     /// Integrator; empty where another program solved.
-    pub integrator: String,
+    pub integrator: &'static str,
     /// Cells over the height.
     pub cells: usize,
     /// Points in a cell, and whether there are runs of the same method and integrator with others.
     pub points_per_cell: usize,
     pub has_other_points: bool,
-    /// Rule of its steps, `growth=0.02`; empty where another program solved.
-    pub step_rule: String,
     /// Largest step of the run with the largest error, s; 0 where another program solved.
     pub largest_step: f64,
     /// Whether no run of the same method on the same mesh took larger steps: the limit may be larger.
@@ -357,28 +315,9 @@ fn quantity_within(
         is_quoted(of_b).cmp(&is_quoted(of_a)).then(a.error.total_cmp(&b.error))
     });
     let best = best?.0.clone();
-    let choices: Vec<&WithinFinding> = choices.iter().map(|(choice, _)| choice).collect();
-    let is_counted = choices.iter().all(|choice| choice.cost > 0.0);
+    let is_counted = choices.iter().all(|(choice, _)| choice.cost > 0.0);
     let bounds = BOUNDS.map(|bound| BoundWithin { bound, choice: cheapest(within(bound), is_counted) });
-    let (reference, far) = (reference.to_owned(), far_methods(&choices));
-    Some(QuantityWithin { quantity, sample, reference, problems, bounds: bounds.to_vec(), best, far })
-}
-
-/// The methods that are far off on their finest mesh, the worst first.
-fn far_methods(choices: &[&WithinFinding]) -> Vec<FarMethod> {
-    let methods = distinct(choices.iter().map(|choice| choice.method.as_str()));
-    let mut far: Vec<FarMethod> = methods
-        .into_iter()
-        .filter_map(|method| {
-            let of = || choices.iter().filter(|choice| choice.method == method);
-            let cells = of().map(|choice| choice.cells).max()?;
-            let errors = of().filter(|choice| choice.cells == cells).map(|choice| choice.error);
-            let error = errors.min_by(f64::total_cmp).filter(|error| *error > FAR)?;
-            Some(FarMethod { method: method.to_owned(), cells, error })
-        })
-        .collect();
-    far.sort_by(|a, b| b.error.total_cmp(&a.error));
-    far
+    Some(QuantityWithin { quantity, sample, problems, bounds: bounds.to_vec(), best })
 }
 
 /// The cheapest choice; beside another program, whose work is not counted, the one on the coarsest mesh.
@@ -390,12 +329,9 @@ fn cheapest(fits: Vec<WithinFinding>, is_counted: bool) -> Option<WithinFinding>
 impl WithinFinding {
     fn new(record: &Record, row: &ErrorRow) -> Self {
         let case = &record.case;
-        // What only a run of this program has.
-        let here = |words: String| if case.counts_work() { words } else { String::new() };
         Self {
             method: case.method.to_string(),
-            integrator: here(case.integrator.name().to_owned()),
-            step_rule: here(case.time_step.to_string()),
+            integrator: if case.counts_work() { case.integrator.name() } else { "" },
             cells: case.cells,
             points_per_cell: case.points_per_cell,
             has_other_points: false,
@@ -529,7 +465,7 @@ mod tests {
 
     /// MPM within 1 % with the shorter steps alone, or with the longer ones too; VP nowhere.
     #[test]
-    fn the_longest_step_tried_is_told_and_a_method_that_stays_far() {
+    fn the_longest_step_tried_is_told() {
         let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM', 'VP']\n\
                     integrator = ['implicit']\ncells = [4]\ntime_step = [{ growth = 0.05 }, { growth = 0.1 }]\n";
         let (study, mut records) = solved("s", text);
@@ -547,7 +483,6 @@ mod tests {
             let choice = percent.choice.as_ref().expect("within");
             assert_eq!((&*choice.method, choice.is_longest_tried, answer.problems), ("MPM", is_longest, 1));
             assert_eq!(promille.choice, None);
-            assert_eq!(answer.far, [FarMethod { method: "VP".to_owned(), cells: 4, error: 0.3 }]);
         }
     }
 
@@ -596,7 +531,7 @@ mod tests {
             let found = found.expect("a choice");
             assert_eq!(found.cells, 4, "{outside} cells are another program's");
             // The steps of another program are not known.
-            let has = [found.largest_step > 0.0, !found.step_rule.is_empty()];
+            let has = [found.largest_step > 0.0, !found.integrator.is_empty()];
             assert_eq!(has, [outside != 4; 2], "{outside} cells are another program's");
         }
     }
