@@ -12,7 +12,7 @@ pub static UNCERTAINTY: Question = Question {
     id: "uncertainty",
     heading: "How certain are values without an exact solution?",
     template: include_str!("uncertainty.md"),
-    places: &[Place::Study],
+    places: &[Place::Terminal, Place::Study],
     ask: |studies| Ok(ask(studies)),
 };
 
@@ -35,10 +35,10 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
 }
 
 /// One row per requested value; `None` without such values.
-pub fn table_of(judgements: &[Judgement]) -> Option<Table> {
+fn table_of(judgements: &[Judgement]) -> Option<Table> {
     let header = "value | > levels | > finest | behaviour | > order | > extrapolated | > uncertainty";
     let rows = judgements.iter().filter_map(row_of);
-    let title = "values without a reference, and their numerical uncertainty";
+    let title = "Values without a reference, and their numerical uncertainty";
     let table = Table::of(title, columns(header), rows).file("uncertainty").note(
         "settlement over the final small-strain one, pressure and stress over the load; behaviour and order \
          of the finest three levels; uncertainty over the finest value: the grid convergence index for \

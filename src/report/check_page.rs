@@ -9,7 +9,6 @@ use crate::judge::study_check::{CheckEnd, Objection, StudyCheck};
 use crate::judge::verdict::{Judgement, VerdictOutcome};
 use crate::questions::finding::{Finding, Place};
 use crate::questions::sentence;
-use crate::questions::uncertainty;
 use crate::render::marked_text::wrapped;
 use crate::render::page::{self, Block};
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
@@ -59,7 +58,7 @@ pub fn text_of(
     let room = LINES.saturating_sub(3 + before.lines().count() + after.lines().count());
     let (answers, mut more) = answers_within(answers, room, terminal)?;
     add(&answers);
-    more.extend(after_details(check).into_iter().map(|(summary, _)| summary));
+    more.extend(proposed(check).map(|(summary, _)| summary));
     if !more.is_empty() && !is_whole {
         add(&wrapped(&format!("--verbose adds: {}", more.join("; ")), "", "  ", width));
     }
@@ -158,27 +157,21 @@ fn objection(one: &Objection<'_>) -> String {
     format!("✗ {line}{}{alike}: {}", one.subject, one.reasons.join("; "))
 }
 
-/// What a reader opens: expectations that could be asked, and values without a reference.
-fn after_details(check: &StudyCheck) -> Vec<(String, Vec<Block>)> {
+/// Expectations that could be asked, with a summary, for a reader to open.
+fn proposed(check: &StudyCheck) -> Option<(String, Vec<Block>)> {
+    let count = Some(check.proposals.len()).filter(|count| *count > 0)?;
     let room = serde_json::json!({ "errors": ROOM_OF_ERROR, "orders": ROOM_OF_ORDER });
-    let proposed = sentence::filled(include_str!("proposed.md"), &room).map(Block::Paragraph).into_iter();
-    let proposed = proposed.chain([Block::Code(check.proposals.join("\n"))]).collect();
-    let uncertain = uncertainty::table_of(&check.judgements);
-    let proposals = count_of(check.proposals.len(), "expectation", "expectations");
-    let all = [
-        (!check.proposals.is_empty()).then(|| (format!("{proposals} that the results meet"), proposed)),
-        uncertain.map(|table| ("values without a reference".to_owned(), vec![Block::Table(table)])),
-    ];
-    all.into_iter().flatten().collect()
+    let words = sentence::filled(include_str!("proposed.md"), &room).map(Block::Paragraph).into_iter();
+    let blocks = words.chain([Block::Code(check.proposals.join("\n"))]).collect();
+    Some((format!("{} that the results meet", count_of(count, "expectation", "expectations")), blocks))
 }
 
 /// What stands below the answers.
 fn after(check: &StudyCheck, file: Option<&str>) -> Vec<Block> {
-    let details =
-        after_details(check).into_iter().map(|(summary, blocks)| Block::Details { summary, blocks });
+    let details = proposed(check).map(|(summary, blocks)| Block::Details { summary, blocks });
     let warnings = list(check.warnings.iter().map(|told| format!("warning: {told}")).collect(), true);
     let next = next_command(check, file).map(|command| Block::Paragraph(format!("next: `{command}`")));
-    details.chain(warnings).chain(next).collect()
+    details.into_iter().chain(warnings).chain(next).collect()
 }
 
 /// The checks of several studies as Markdown, those that did not pass first: a forge cuts a long summary at its end. `file_of`
