@@ -58,7 +58,7 @@ const GROUPS: [Group; 5] = [
         &[
             (
                 "compare",
-                ["compare HEAD~1 HEAD", "compare --commands './a {case} {out}' './b {case} {out}' gate.toml"],
+                ["compare HEAD~1 HEAD", "compare out-before out-after gate"],
             ),
             ("history", ["history", "history terzaghi-mesh --format csv"]),
             (
