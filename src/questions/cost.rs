@@ -4,9 +4,9 @@ use crate::case::IntegratorKind;
 use crate::case::grouping::distinct;
 use crate::judge::study_results::StudyResults;
 use crate::questions::finding::{Finding, Place, Question, best};
-use crate::questions::words::{self, COUNTED_WORK};
+use crate::questions::words::COUNTED_WORK;
 use crate::questions::work_precision::WorkPrecision;
-use crate::render::chart::{Chart, ChartAxis, Naming, PointName, Series, Size, slots};
+use crate::render::chart::{Chart, ChartAxis, Series, Size, slots};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::table::{Cell, Table, columns};
@@ -83,9 +83,6 @@ fn answer(study: &str, precision: &WorkPrecision<'_>) -> Option<Finding> {
     Some(parts.with(Block::Table(table(precision))))
 }
 
-/// Factor on the most work up to which the axis goes.
-const ROOM_FOR_NAMES: f64 = 5.0;
-
 /// What the figure shows: who needs the least work for each tolerance.
 fn title_of(precision: &WorkPrecision<'_>) -> String {
     let runs = precision.cheapest.iter().filter_map(|one| Some((one.tolerance, one.run.as_ref()?)));
@@ -103,7 +100,7 @@ fn title_of(precision: &WorkPrecision<'_>) -> String {
     }
 }
 
-/// A line per method and integrator over its best runs; names stand at the ends of the lines.
+/// A line per method and integrator over its best runs.
 fn chart(precision: &WorkPrecision<'_>) -> Chart {
     let mut chart = Chart::new(
         title_of(precision),
@@ -111,7 +108,6 @@ fn chart(precision: &WorkPrecision<'_>) -> Chart {
         ChartAxis::log10("error of the pore pressure, worst of the outputs (–)"),
     );
     chart.size = Size { width: 1000.0, plot_height: 460.0 };
-    chart.naming = Naming::Hover;
     let fronts = precision.fronts();
     let methods = distinct(fronts.iter().map(|front| front.method.to_string()));
     let names: Vec<&str> = methods.iter().map(String::as_str).collect();
@@ -123,22 +119,9 @@ fn chart(precision: &WorkPrecision<'_>) -> Chart {
         let name = format!("{method}, {}", front.integrator.name());
         let points = front.runs.iter().map(|run| (run.work, run.error)).collect();
         let series = Series::new(name, points);
-        add_named(&mut chart, series.slot(slots[place]).marker(marker.unwrap_or_default()));
-    }
-    // Room for the names right of the last points.
-    let works = || chart.series.iter().flat_map(|series| &series.points).map(|(work, _)| *work);
-    let (least, most) = (works().fold(f64::INFINITY, f64::min), works().fold(0.0, f64::max));
-    if least < most {
-        chart.x = chart.x.between(0.8 * least, ROOM_FOR_NAMES * most);
+        chart.series.push(series.slot(slots[place]).marker(marker.unwrap_or_default()));
     }
     chart
-}
-
-/// Adds a series with its name at the end of its line.
-fn add_named(chart: &mut Chart, series: Series) {
-    let last = series.points.last().copied();
-    chart.names.extend(last.map(|at| PointName { at, name: series.name.clone() }));
-    chart.series.push(series);
 }
 
 fn table(precision: &WorkPrecision<'_>) -> Table {
@@ -150,8 +133,8 @@ fn table(precision: &WorkPrecision<'_>) -> Table {
                 Cell::Code(case.label()),
                 Cell::Error(run.error),
                 Cell::Number(1e3 * run.work),
-                words::counted(Some(counters.steps)),
-                words::counted(Some(counters.point_updates)),
+                Cell::Count(counters.steps),
+                Cell::Count(counters.point_updates),
                 if cheapest.is_confirmed { "yes" } else { "no" }.into(),
             ]
         }));
@@ -215,8 +198,5 @@ mod tests {
         assert_eq!(series(1), ("MPM, implicit", &[(0.023, 0.0092)][..]));
         assert_ne!(chart.series[0].slot, chart.series[1].slot, "a colour per method");
         assert_eq!(chart.series[0].marker, chart.series[1].marker, "a marker per integrator");
-        let ends: Vec<_> = chart.series.iter().map(|series| (series.points.last(), &series.name)).collect();
-        let names: Vec<_> = chart.names.iter().map(|named| (Some(&named.at), &named.name)).collect();
-        assert_eq!(names, ends, "a name at the end of each line");
     }
 }

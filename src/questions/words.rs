@@ -97,14 +97,6 @@ pub fn sample(sample: Sample) -> &'static str {
     }
 }
 
-/// Why the work of a case is not known.
-pub const NOT_COUNTED: &str = "of an attached solver";
-
-/// Work, where it is counted.
-pub fn counted(work: Option<u64>) -> Cell {
-    work.map_or(Cell::missing(NOT_COUNTED), Cell::Count)
-}
-
 /// A quantity at its places, in words.
 pub fn measured(measured: Quantity, at: Sample) -> String {
     format!("{} {}", quantity(measured), sample(at))

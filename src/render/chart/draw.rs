@@ -10,7 +10,7 @@ use crate::render::chart::slots::TWIN;
 use crate::render::chart::svg::{
     Area, Drawn, Font, NARROW, Px, document, group, layer, line, scripted, stroke, units, write,
 };
-use crate::render::chart::words::{Frame, Space, names, rules, triangles};
+use crate::render::chart::words::{Frame, Space, rules, triangles};
 use crate::render::chart::{Chart, Naming, Series, Style};
 use crate::render::palette::{FINE_GRID, FRAME, GRID, QUIET, SCREEN, TEXT};
 use crate::render::script::{width, wrap};
@@ -163,11 +163,8 @@ impl Chart {
                 let mut narrow = self.clone();
                 narrow.size.plot_height = self.size.plot_height.min(NARROW_HEIGHT);
                 narrow.size.width = NARROW;
-                // Names beside lines and points have no room.
-                if self.naming == Naming::Ends || !self.names.is_empty() {
-                    narrow.naming = Naming::Legend;
-                    narrow.names.clear();
-                }
+                // Names beside lines have no room.
+                narrow.naming = Naming::Legend;
                 narrow.document_of(|| narrow.as_panels((1, NARROW)))
             }
         };
@@ -204,7 +201,6 @@ impl Chart {
         let markers = chart.markers(&layout, &mut space)?;
         let words = triangles(&mut space, chart, &layout)?
             + &rules(&mut space, chart, &layout)?
-            + &names(&mut space, chart, &layout)?
             + &end_names(chart, &layout)?;
         let below = (PAD, layout.plot.bottom + BELOW + 8.0);
         let around = layout.legend.elements(layout.size, below)? + &chart.texts(&layout)?;

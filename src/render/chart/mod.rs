@@ -38,8 +38,6 @@ pub struct Chart {
     pub rules: Vec<Rule>,
     /// Triangles that show the slope of an order.
     pub triangles: Vec<SlopeTriangle>,
-    /// Names written beside single points.
-    pub names: Vec<PointName>,
     /// Rows with words, of a dot plot.
     pub rows: Option<ChartRows>,
     /// Where the names of series stand.
@@ -66,8 +64,6 @@ pub enum Naming {
     Legend,
     /// Right of the plot, at the ends of their lines.
     Ends,
-    /// Shown when one points at a line: another figure has their colours.
-    Hover,
 }
 
 impl Chart {
@@ -81,7 +77,6 @@ impl Chart {
             series: Vec::new(),
             rules: Vec::new(),
             triangles: Vec::new(),
-            names: Vec::new(),
             rows: None,
             naming: Naming::default(),
             size: Size::default(),
@@ -271,15 +266,6 @@ pub struct Rule {
     pub at: f64,
     /// Words at the line.
     pub label: String,
-}
-
-/// The name of a point, written beside it where there is room.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PointName {
-    /// The point.
-    pub at: (f64, f64),
-    /// Its name.
-    pub name: String,
 }
 
 /// A triangle of a given slope on doubly logarithmic axes.

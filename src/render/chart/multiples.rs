@@ -58,9 +58,6 @@ impl Chart {
         };
         let series: Vec<Series> = context.map(grey).chain(coloured.map(placed)).collect();
         let mut panel = self.clone();
-        panel.names.retain(|name| {
-            series.iter().any(|series| series.style != Style::Context && series.points.contains(&name.at))
-        });
         panel.triangles.retain(|triangle| is_shown(&triangle.beside));
         panel.series = series;
         let methods = grouped(shown.iter().copied(), |name| method_of(name));
@@ -120,7 +117,7 @@ pub(super) fn side_by_side(panels: &[(Px, String)], (columns, wide): (usize, f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::chart::{ChartAxis, PointName, SlopeTriangle};
+    use crate::render::chart::{ChartAxis, SlopeTriangle};
 
     fn chart(series: usize) -> Chart {
         let mut chart = Chart::new("E", ChartAxis::log10("h"), ChartAxis::log10("e"))
@@ -142,7 +139,6 @@ mod tests {
     #[test]
     fn every_series_is_coloured_in_one_panel_and_grey_in_the_others_on_one_scale() {
         let mut whole = chart(15);
-        whole.names = vec![PointName { at: (0.1, 20.0), name: "8 cells".to_owned() }];
         whole.triangles = vec![SlopeTriangle { slope: 1.0, beside: "method 14".to_owned() }];
         let panels = whole.panels();
         assert_eq!(panels.len(), 3);
@@ -158,7 +154,6 @@ mod tests {
             panels.iter().flat_map(|panel| &panel.series).filter(|one| is_counted(one)).collect();
         names.dedup_by_key(|series| &series.name);
         assert_eq!(names.len(), 15);
-        assert_eq!(panels.iter().map(|panel| panel.names.len()).collect::<Vec<_>>(), [1, 0, 0]);
         assert_eq!(panels.iter().map(|panel| panel.triangles.len()).collect::<Vec<_>>(), [0, 0, 1]);
         let part = |height: f64, text: &str| ((450.0, height), text.to_owned());
         let (size, drawn) =

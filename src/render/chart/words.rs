@@ -1,9 +1,9 @@
-//! What is written among the data where there is room: slope triangles, the words of rules and the names of points.
+//! What is written among the data where there is room: slope triangles and the words of rules.
 use crate::render::chart::Chart;
 use crate::render::chart::axis::Scale;
 use crate::render::chart::draw::Layout;
 use crate::render::chart::svg::{Drawn, Font, Px, group, layer, line, polygon, stroke, write};
-use crate::render::palette::{QUIET, TEXT, THEORY};
+use crate::render::palette::{QUIET, THEORY};
 use crate::render::script::width;
 use oedometer_soil::elementary;
 use plotters::prelude::{Color, RGBColor};
@@ -84,9 +84,8 @@ impl Space {
         }
     }
 
-    /// Takes the room with the least in its way, the first of equals. A room outside the frame or on another word is
-    /// taken only where `must` says so.
-    fn take<T>(&mut self, offers: Vec<Offer<T>>, must: bool) -> Option<T> {
+    /// Takes the room with the least in its way, the first of equals.
+    fn take<T>(&mut self, offers: Vec<Offer<T>>) -> Option<T> {
         let cost = |offer: &Offer<T>| {
             let room = offer.room.grown(3.0);
             let met = self.obstacles.iter().filter(|at| room.holds(**at)).count();
@@ -98,9 +97,6 @@ impl Space {
         let costs = offers.iter().map(cost).collect::<Vec<_>>();
         let best = (0..offers.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b]))?;
         let offer = offers.into_iter().nth(best)?;
-        if !must && self.taken.iter().any(|taken| taken.meets(&offer.room)) {
-            return None;
-        }
         self.taken.push(offer.room);
         Some(offer.drawn)
     }
@@ -133,51 +129,8 @@ pub(super) fn rules(space: &mut Space, chart: &Chart, layout: &Layout) -> Result
                 Offer { room: Frame::around(at, w, h), penalty: 0.2 * (1.0 - t) + penalty, drawn: at }
             })
         });
-        if let Some(at) = space.take(offers.collect(), true) {
+        if let Some(at) = space.take(offers.collect()) {
             out += &words(layout.size, &rule.label, at, QUIET.light)?;
-        }
-    }
-    Ok(out)
-}
-
-/// Names of points where there is room for them; points with the same name are named once.
-pub(super) fn names(space: &mut Space, chart: &Chart, layout: &Layout) -> Result<String, String> {
-    let mut out = String::new();
-    let mut written: Vec<&str> = Vec::new();
-    for one in &chart.names {
-        let at = layout.x.px(one.at.0).zip(layout.y.px(one.at.1));
-        let Some((x, y)) = at.filter(|at| layout.plot.grown(0.5).holds(*at)) else { continue };
-        if written.contains(&one.name.as_str()) {
-            continue;
-        }
-        let (w, h) = half_size(&one.name);
-        let beside = [
-            ((w + 7.0, -5.0), 0.0),
-            ((w + 7.0, 6.0), 0.1),
-            ((0.0, -13.0), 0.3),
-            ((0.0, 14.0), 0.3),
-            ((-w - 7.0, -5.0), 0.2),
-            ((-w - 7.0, 6.0), 0.3),
-            ((0.7 * w, -24.0), 0.6),
-            ((-0.7 * w, 25.0), 0.6),
-        ];
-        let away = [24.0, 40.0, 56.0].into_iter().flat_map(|far| {
-            [(w, -far), (w, far), (-w, -far), (-w, far), (w + far, 0.0)].map(|off| (off, 0.05 * far))
-        });
-        let offers = beside.into_iter().map(|place| (place, false)).chain(away.map(|place| (place, true)));
-        let offers = offers.map(|(((dx, dy), penalty), is_away)| {
-            let at = (x + dx, y + dy);
-            Offer { room: Frame::around(at, w, h), penalty, drawn: (at, is_away) }
-        });
-        if let Some((at, is_away)) = space.take(offers.collect(), false) {
-            if is_away {
-                // A thin line leads from the point to the nearest edge of its words.
-                let end = (x.clamp(at.0 - w, at.0 + w), y.clamp(at.1 - h, at.1 + h));
-                let leader = layer(layout.size, |area| line(area, &[(x, y), end], stroke(QUIET.light, 0.7)))?;
-                out += &group("", "", &leader);
-            }
-            out += &words(layout.size, &one.name, at, TEXT.light)?;
-            written.push(&one.name);
         }
     }
     Ok(out)
@@ -210,7 +163,7 @@ pub(super) fn triangles(space: &mut Space, chart: &Chart, layout: &Layout) -> Re
             .collect();
         let stride = positions.len().div_ceil(MOST_POSITIONS).max(1);
         let offers = positions.into_iter().step_by(stride).flat_map(|at| beside(at, wanted.slope, layout));
-        if let Some(found) = space.take(offers.collect(), true) {
+        if let Some(found) = space.take(offers.collect()) {
             let [a, b, c] = found.corners;
             let drawn = layer(layout.size, |area| -> Drawn {
                 polygon(area, &found.corners, QUIET.light.mix(0.10))?;
@@ -266,7 +219,7 @@ fn beside(at: Px, slope: f64, layout: &Layout) -> Vec<Offer<Triangle>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::chart::{ChartAxis, PointName, Series};
+    use crate::render::chart::{ChartAxis, Series};
 
     #[test]
     fn the_emptier_place_wins_and_the_frame_is_kept() {
@@ -280,30 +233,9 @@ mod tests {
             };
             places.iter().enumerate().map(offer).collect()
         };
-        assert_eq!(space.take(offers(&[(50.0, 50.0), (50.0, 20.0), (99.0, 20.0)]), true), Some(1));
-        assert_eq!(space.take(offers(&[(50.0, 20.0), (20.0, 80.0)]), true), Some(1), "the first is taken");
-        assert_eq!(space.take(offers(&[(50.0, 20.0)]), false), None);
-        assert_eq!(space.take(offers(&[]), true), None);
-    }
-
-    #[test]
-    fn names_that_have_no_room_beside_their_points_are_led_to_from_them() {
-        let leaders = |count: u32| {
-            let mut chart = Chart::new("", ChartAxis::linear("x"), ChartAxis::linear("y"))
-                .with(Series::new("", vec![(0.0, 0.0), (10.0, 10.0)]));
-            let name = |place: u32| {
-                let at = (5.0 + 0.02 * f64::from(place), 5.0);
-                PointName { at, name: format!("program number {place}") }
-            };
-            chart.names = (0..count).map(name).collect();
-            let svg = chart.svg().expect("a figure");
-            let written =
-                (0..count).filter(|place| svg.contains(&format!(">program number {place}<"))).count();
-            assert_eq!(written, count as usize, "each is written");
-            svg.matches("stroke=\"#5F5F5F\" stroke-width=\"7\"").count()
-        };
-        assert_eq!(leaders(1), 0);
-        assert!(leaders(8) > 0);
+        assert_eq!(space.take(offers(&[(50.0, 50.0), (50.0, 20.0), (99.0, 20.0)])), Some(1));
+        assert_eq!(space.take(offers(&[(50.0, 20.0), (20.0, 80.0)])), Some(1), "the first is taken");
+        assert_eq!(space.take(offers(&[])), None);
     }
 
     #[test]
