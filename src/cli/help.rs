@@ -56,10 +56,7 @@ const GROUPS: [Group; 5] = [
     (
         "Over time",
         &[
-            (
-                "compare",
-                ["compare HEAD~1 HEAD", "compare out-before out-after gate"],
-            ),
+            ("compare", ["compare HEAD~1 HEAD", "compare out-before out-after gate"]),
             ("history", ["history", "history terzaghi-mesh --format csv"]),
             (
                 "bisect",

@@ -166,15 +166,13 @@ pub enum TableFormat {
     Json,
 }
 
-/// Prints tables separated by empty lines; JSON as an array with a list of rows per table.
+/// Prints tables separated by empty lines.
 pub fn print_tables(tables: &[Table], format: TableFormat) -> anyhow::Result<()> {
     let write = match format {
         TableFormat::Table => |table: &Table| table.to_text(table_width()),
         TableFormat::Markdown => Table::to_markdown,
         TableFormat::Csv => Table::to_csv,
-        TableFormat::Json => {
-            return print_data(&json_of(&tables.iter().map(rows_of).collect::<anyhow::Result<Vec<_>>>()?)?);
-        }
+        TableFormat::Json => |table: &Table| Ok(table.to_json().to_string()),
     };
     let text = tables.iter().map(write).collect::<Result<Vec<_>, _>>()?.join("\n");
     if format == TableFormat::Table { print_coloured(&text) } else { print_data(&text) }
@@ -196,25 +194,6 @@ pub fn csv_of<F: AsRef<[u8]>>(
 /// A value as indented JSON with a line break at the end.
 pub fn json_of(value: &impl serde::Serialize) -> anyhow::Result<String> {
     Ok(serde_json::to_string_pretty(value)? + "\n")
-}
-
-/// The rows of a table by their headers, as in its CSV.
-fn rows_of(table: &Table) -> anyhow::Result<Vec<serde_json::Map<String, serde_json::Value>>> {
-    let text = table.to_plain_csv()?;
-    let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let header = reader.headers()?.clone();
-    reader
-        .records()
-        .map(|record| {
-            let record = record?;
-            let fields = header.iter().zip(&record).map(|(name, field)| {
-                let number = field.parse::<f64>().ok().filter(|number| number.is_finite());
-                let value = number.map_or_else(|| field.into(), |number| serde_json::json!(number));
-                (name.to_owned(), value)
-            });
-            Ok(fields.collect())
-        })
-        .collect()
 }
 
 /// Prints text for people, the marks of verdicts in colour.
@@ -256,7 +235,6 @@ fn wants_colour(is_terminal: bool, variable: impl Fn(&str) -> Option<String>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::table::{Cell, TableColumn};
 
     /// A device that refuses in its own way.
     struct Device(ErrorKind);
@@ -338,17 +316,6 @@ mod tests {
         assert!(!wants_colour(true, |name| (name == "NO_COLOR").then(|| "1".to_owned())));
         assert!(wants_colour(true, |name| (name == "NO_COLOR").then(String::new)));
         assert!(!wants_colour(true, |name| (name == "TERM").then(|| "dumb".to_owned())));
-    }
-
-    #[test]
-    fn a_row_in_json_has_numbers_as_numbers_and_words_as_words() {
-        let table = Table {
-            rows: vec![vec!["GIMP".into(), Cell::Error(1.5e-3)], vec!["nan".into(), Cell::Error(f64::NAN)]],
-            ..Table::of("t", vec![TableColumn::text("method"), TableColumn::number("error")], [])
-        };
-        let rows = rows_of(&table).expect("rows");
-        assert_eq!(serde_json::to_string(&rows[0]).expect("JSON"), r#"{"error":0.0015,"method":"GIMP"}"#);
-        assert!(rows[1]["error"].is_string(), "what is no number is written as such: {:?}", rows[1]);
     }
 
     #[test]

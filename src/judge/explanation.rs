@@ -56,13 +56,7 @@ pub fn explain(
     let has_other_inputs = golden.is_some_and(|(_, others)| others.contains(&label));
     let golden = golden.map(|(golden, _)| golden);
     let (differences, agreeing) = golden.map_or((Vec::new(), 0), |golden| differences_of(record, golden));
-    Ok(Explanation {
-        carriers,
-        has_other_inputs,
-        differences,
-        agreeing,
-        has_golden: golden.is_some(),
-    })
+    Ok(Explanation { carriers, has_other_inputs, differences, agreeing, has_golden: golden.is_some() })
 }
 
 /// Against the first reference, the output with the largest error of every quantity and place.
@@ -97,8 +91,8 @@ fn differences_of(record: &Record, golden: &GoldenFile) -> (Vec<Difference>, usi
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::golden::measure::GoldenKey;
     use crate::case::quantity::Quantity;
+    use crate::golden::measure::GoldenKey;
 
     #[test]
     fn golden_values_of_a_case_differ_or_agree_and_are_counted_once() {

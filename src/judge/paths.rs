@@ -7,8 +7,7 @@ use crate::measure::fields::relative_error;
 use crate::record::{Record, Status};
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};
 use oedometer_convergence::{
-    Classification, ErrorSeries, SeriesDemand, SeriesLevel, SlopeFit, Undefined, classify, finest_order,
-    pair_orders, slope,
+    Classification, ErrorSeries, SeriesDemand, SeriesLevel, Undefined, classify, finest_order, pair_orders,
 };
 use oedometer_problem::integrator::IntegratorKind;
 use oedometer_soil::material::Material;
@@ -37,8 +36,6 @@ pub struct SeriesSummary<'a> {
     pub series: ErrorSeries,
     /// Orders between neighbours.
     pub pairs: Vec<Result<f64, Undefined>>,
-    /// Straight fit over all levels.
-    pub slope: Result<SlopeFit, Undefined>,
     /// Order on the finest window.
     pub finest: Result<f64, Undefined>,
     /// Class, reason and floor.
@@ -150,7 +147,6 @@ impl<'a> Path<'a> {
         let series = self.series(measure);
         SeriesSummary {
             pairs: pair_orders(&series),
-            slope: slope(&series),
             finest: finest_order(&series),
             classification: classify(&series, &self.context(measure)),
             path: self.clone(),

@@ -212,15 +212,12 @@ fn order_found(band: OrderBand, class: Option<Class>, found: &Classification) ->
         }
         // That the class is another one is said by its own check.
         _ if class.is_some_and(|class| class != found.class) => {
-            Check::failed("order", format!("no order to compare with {limits}"))
+            Check { follows: true, ..Check::failed("order", format!("no order to compare with {limits}")) }
         }
-        _ => {
-            let reason = format!("no order to compare with {limits}: the series is {}", found.class);
-            Check {
-                follows: class.is_some_and(|class| class != found.class),
-                ..Check::failed("order", reason)
-            }
-        }
+        _ => Check::failed(
+            "order",
+            format!("no order to compare with {limits}: the series is {}", found.class),
+        ),
     }
 }
 

@@ -141,8 +141,6 @@ pub struct Leader {
     pub reached: usize,
     /// Problems.
     pub of: usize,
-    /// Problems in which no method is cheaper.
-    pub cheapest: usize,
     /// Its largest cost over that of the cheapest method, of any group.
     pub dearest: f64,
 }
@@ -267,7 +265,6 @@ fn leader(race: &RaceFindings, read_out: ReadOut) -> Option<Leader> {
             as_often: 1,
             reached: ratios.len(),
             of: race.situations.len(),
-            cheapest: ratios.iter().filter(|ratio| **ratio <= 1.0).count(),
             dearest: ratios.into_iter().fold(1.0, f64::max),
         }
     };

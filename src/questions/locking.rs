@@ -53,8 +53,8 @@ fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
 
 /// The answer of one sweep at its last output; methods that keep their result stand first.
 fn answer(study: &str, sweep: &StiffnessSweep) -> Option<Finding> {
-    let (time_factor, largest_ratio) = (*sweep.time_factors.last()?, *sweep.values.last()?);
-    let mut rows: Vec<&SweepRow> = sweep.at(time_factor).collect();
+    let (time_factor, largest_ratio) = (sweep.time_factor, *sweep.values.last()?);
+    let mut rows: Vec<&SweepRow> = sweep.rows.iter().collect();
     rows.sort_by_key(|row| Reverse(row.lost_from().unwrap_or(usize::MAX)));
     let kept = rows.iter().filter(|row| keeps(row));
     let kept_methods: Vec<String> = kept.map(|row| row.method.to_string()).collect();
@@ -144,14 +144,13 @@ mod tests {
     fn row(name: &str, errors: [[Option<f64>; 2]; 3]) -> SweepRow {
         SweepRow {
             method: SolverName::Own(Method::named(name).expect("a method")),
-            time_factor: 0.1,
             found: errors.to_vec(),
             failed: vec![None; 3],
         }
     }
 
     fn found(rows: Vec<SweepRow>) -> Finding {
-        let sweep = StiffnessSweep { cells: 4, values: vec![0.2, 0.4, 0.49], time_factors: vec![0.1], rows };
+        let sweep = StiffnessSweep { cells: 4, values: vec![0.2, 0.4, 0.49], time_factor: 0.1, rows };
         answer("s", &sweep).expect("methods")
     }
 

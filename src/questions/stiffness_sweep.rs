@@ -1,4 +1,4 @@
-//! Errors of the methods over Poisson's ratio of the skeleton, through consolidation.
+//! Errors of the methods over Poisson's ratio of the skeleton at the last output.
 
 use crate::case::{Quantity, Sample, SolverName};
 use crate::judge::paths::{first_error, grouped};
@@ -27,13 +27,11 @@ fn usual_water<'a>(records: impl Iterator<Item = &'a Record>) -> Option<f64> {
     groups.into_iter().find(|(_, records)| records.len() == most).map(|(bits, _)| f64::from_bits(bits))
 }
 
-/// One method at one time over all ratios.
+/// One method over all ratios.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepRow {
     /// The method.
     pub method: SolverName,
-    /// Time factor of the output.
-    pub time_factor: f64,
     /// At each ratio the relative L2 errors of the nodal displacement and of the pressure at the points.
     pub found: Vec<[Option<f64>; 2]>,
     /// How the run at each value failed, where it did: such a run has no result that could be lost.
@@ -82,9 +80,9 @@ pub struct StiffnessSweep {
     pub cells: usize,
     /// Values, ascending.
     pub values: Vec<f64>,
-    /// Time factors of the outputs, ascending.
-    pub time_factors: Vec<f64>,
-    /// One row for each method and time.
+    /// Time factor of the output.
+    pub time_factor: f64,
+    /// One row for each method.
     pub rows: Vec<SweepRow>,
 }
 
@@ -128,9 +126,9 @@ impl StiffnessSweep {
         if values.len() < LEAST_VALUES {
             return None;
         }
-        let time_factors = hardest.case.time_factors.to_vec();
+        let time_factor = *hardest.case.time_factors.last()?;
         let reference = study.references[0].name();
-        let found = |method: SolverName, time_factor: f64, value: f64| {
+        let found = |method: SolverName, value: f64| {
             let record =
                 alike.iter().find(|record| record.case.method == method && ratio_of(record) == value);
             let error = |quantity, sample| first_error(record?, quantity, sample, reference, time_factor);
@@ -140,23 +138,14 @@ impl StiffnessSweep {
             let is_of = |record: &&&Record| record.case.method == method && ratio_of(record) == value;
             failed.iter().find(is_of)?.status.failure().map(Failure::name_with_step)
         };
-        let mut rows = Vec::new();
-        for time_factor in time_factors.iter().copied() {
-            for method in methods.iter().copied() {
-                let found = values.iter().map(|value| found(method, time_factor, *value)).collect();
-                let failed = values.iter().map(|value| failure(method, *value)).collect();
-                let row = SweepRow { method, time_factor, found, failed };
-                if row.runs() >= LEAST_VALUES || row.failed_from().is_some() {
-                    rows.push(row);
-                }
-            }
-        }
-        Some(Self { cells: hardest.case.cells, values, time_factors, rows })
-    }
-
-    /// The rows of one output.
-    pub fn at(&self, time_factor: f64) -> impl Iterator<Item = &SweepRow> {
-        self.rows.iter().filter(move |row| row.time_factor == time_factor)
+        let row = |method: SolverName| SweepRow {
+            method,
+            found: values.iter().map(|value| found(method, *value)).collect(),
+            failed: values.iter().map(|value| failure(method, *value)).collect(),
+        };
+        let is_told = |row: &SweepRow| row.runs() >= LEAST_VALUES || row.failed_from().is_some();
+        let rows = methods.into_iter().map(row).filter(is_told).collect();
+        Some(Self { cells: hardest.case.cells, values, time_factor, rows })
     }
 }
 
@@ -191,7 +180,7 @@ mod tests {
         for _ in 0..2 {
             let found = sweep(&records).expect("three values");
             assert_eq!((found.cells, &found.values[..]), (16, &values[..]));
-            let row = found.at(0.1).next().expect("a row");
+            let row = &found.rows[0];
             let expected = [0, 1, 2].map(|place| [Some(mark(16, place)); 2]);
             assert_eq!(row.found, expected);
             records.reverse();
@@ -219,7 +208,7 @@ mod tests {
         among[1].status =
             failed.iter().find(|one| one.status != Status::Ok).expect("it failed").status.clone();
         let found = sweep(&among).expect("values");
-        let row = found.at(0.1).find(|row| row.method.to_string() == "MPM").expect("a row");
+        let row = found.rows.iter().find(|row| row.method.to_string() == "MPM").expect("a row");
         assert_eq!(row.failed_from().map(|(_, how)| how), Some("unstable at step 1"), "{row:?}");
         // A soil in another water is in no sweep.
         for record in records.iter_mut().filter(|record| place_of(record) == 2) {

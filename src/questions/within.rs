@@ -108,8 +108,7 @@ fn answer(study: &str, all: &[QuantityWithin]) -> Option<Finding> {
 fn table(all: &[QuantityWithin]) -> Table {
     let mut rows = Vec::new();
     let choices = all.iter().flat_map(|asked| asked.bounds.iter().filter_map(|bound| bound.choice.as_ref()));
-    let integrators =
-        distinct(choices.chain(all.iter().map(|asked| &asked.best)).map(|one| one.integrator));
+    let integrators = distinct(choices.chain(all.iter().map(|asked| &asked.best)).map(|one| one.integrator));
     let shared = if let [only] = integrators[..] { Some(only) } else { None };
     for asked in all {
         for (place, bound) in asked.bounds.iter().enumerate() {

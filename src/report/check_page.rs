@@ -15,7 +15,7 @@ use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
 use crate::report::failures::failures_of;
 use crate::report::sections;
-use crate::report::tables::golden_changes::{self, judgement_of, summary};
+use crate::report::tables::golden_changes::{judgement_of, summary};
 use oedometer_soil::wording::count_of;
 use std::fmt::Write as _;
 
@@ -193,10 +193,6 @@ pub fn markdown_of(
             headline(check, true)
         ))];
         blocks.extend(before(check, true));
-        if !check.differences().is_empty() {
-            blocks.push(Block::Table(golden_changes::differences_table(check.differences())));
-            blocks.push(Block::Table(golden_changes::changes_table(&check.changes)));
-        }
         blocks.extend(after(check, file_of(&check.study).as_deref()));
         let _ = write!(text, "\n{}", page::markdown_of(&blocks)?);
     }

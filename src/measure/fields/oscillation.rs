@@ -107,11 +107,7 @@ impl PlaneField {
         let columns = across * case.points_per_cell;
         let over_load =
             |pressures: &[f64]| pressures.iter().map(|p| p / case.column.pressure_scale()).collect();
-        Ok(Some(Self {
-            columns,
-            computed: over_load(&snapshot.points.pressure),
-            exact: over_load(&exact),
-        }))
+        Ok(Some(Self { columns, computed: over_load(&snapshot.points.pressure), exact: over_load(&exact) }))
     }
 
     /// Oscillation index: total variation of the run's pressure along every row and column of

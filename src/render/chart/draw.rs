@@ -88,10 +88,7 @@ impl Layout {
 /// The ends of both axes.
 pub(super) fn ends(chart: &Chart) -> (Ends, Ends) {
     let points = || chart.series.iter().flat_map(|series| &series.points);
-    (
-        Ends::of(&chart.x, points().map(|point| point.0)),
-        Ends::of(&chart.y, points().map(|point| point.1)),
-    )
+    (Ends::of(&chart.x, points().map(|point| point.0)), Ends::of(&chart.y, points().map(|point| point.1)))
 }
 
 /// Sentences on what the figure cannot show.

@@ -124,8 +124,7 @@ fn short(mut table: Table, elsewhere: &str) -> Table {
 }
 
 /// The questions of the page behind the choice of a method, in their order; what changed stands before the first of the last.
-const ASKED: [&str; 8] =
-    ["cost", "peers", "paper", CHANGES, "locking", "convergence", "time-step", "audit"];
+const ASKED: [&str; 8] = ["cost", "peers", "paper", CHANGES, "locking", "convergence", "time-step", "audit"];
 
 /// The section of what changed.
 const CHANGES: &str = "changes";

@@ -61,29 +61,6 @@ pub(crate) fn judgement_of(one: &CaseChange) -> (Mood, &'static str) {
     }
 }
 
-/// Cases that differ from their golden values, accuracy and cost together.
-pub(crate) fn changes_table(changes: &[CaseChange]) -> Table {
-    let rows = changes.iter().take(MOST_DIFFERENCES).map(|one| {
-        let (mood, word) = judgement_of(one);
-        vec![
-            Cell::Verdict(mood, word.to_owned()),
-            Cell::Code(one.case.clone()),
-            Cell::Number(one.cost_ratio),
-            Cell::Count(one.worse as u64),
-            Cell::Count(one.better as u64),
-            Cell::Count(one.unpaired as u64),
-        ]
-    });
-    Table::of(
-        "accuracy and cost together",
-        columns(
-            "change | case | > cost over golden | > errors that grew | > errors that fell | > without \
-                 partner",
-        ),
-        rows,
-    )
-}
-
 /// Values that differ from their golden ones.
 pub fn differences_table(differences: &[Difference]) -> Table {
     let value =
@@ -176,12 +153,9 @@ mod tests {
             (case(Dominated, 3.0, 5, 0), "✗ worse than its golden values"),
             (case(NotComparable, 1.0, 0, 0), "✗ values on one side only"),
         ];
-        let table = changes_table(&all.each_ref().map(|one| one.0.clone()));
-        for (row, (change, words)) in table.rows.iter().zip(&all) {
-            assert_eq!(row[0].show(), *words);
-            let counts =
-                [change.worse, change.better, change.unpaired].map(|count| Cell::Count(count as u64));
-            assert_eq!((&row[2], &row[3..]), (&Cell::Number(change.cost_ratio), &counts[..]));
+        for (change, words) in &all {
+            let (mood, word) = judgement_of(change);
+            assert_eq!(Cell::Verdict(mood, word.to_owned()).show(), *words);
         }
         let moved = |values: usize| {
             let one = |number: usize| Difference {

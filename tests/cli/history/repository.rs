@@ -240,8 +240,7 @@ fn attached(at: &Path) {
              \x20           result.write(f'{{time!r}},{{node * height / cells!r}},{{p!r}},{{u!r}}\\n')\n"
         )
     };
-    for (name, factor) in [("good.py", "0.3 / cells**2"), ("worse.py", "0.3 / cells")]
-    {
+    for (name, factor) in [("good.py", "0.3 / cells**2"), ("worse.py", "0.3 / cells")] {
         fs::write(at.join(name), solver(factor)).expect("written");
     }
     fs::write(at.join("nodes.toml"), "sample = \"nodes\"\n").expect("written");
