@@ -197,28 +197,7 @@ pub(crate) fn cases_of_study(path: &str, text: &str) -> Option<BTreeMap<String, 
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::record::{ErrorRow, WallSample};
-
-    #[test]
-    fn a_round_adds_its_times_to_those_of_the_first_and_tells_values_that_differ() {
-        let mut records = records_of(
-            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\ncells = [2]\n\
-             integrator = ['implicit']\ntime_step = [{ growth = 0.5 }]\n",
-        );
-        let mut state = State { name: "now".to_owned(), studies: BTreeMap::new(), notes: Vec::new() };
-        let mut round = |records: &[Record]| {
-            state.add_round("t", records);
-            let times: usize = state.studies["t"].seconds.values().map(Vec::len).sum();
-            (times, state.notes.len())
-        };
-        let (once, _) = round(&records);
-        assert!(once > 0);
-        assert_eq!(round(&records), (2 * once, 0));
-        let is_kept = |row: &&mut ErrorRow| row.norm == row.quantity.first_norm();
-        let row = records[0].errors.iter_mut().find(is_kept).expect("a kept error");
-        (row.value, row.absolute) = (2.0 * row.value, 2.0 * row.absolute);
-        assert_eq!(round(&records), (3 * once, 1));
-    }
+    use crate::record::WallSample;
 
     #[test]
     fn the_seconds_of_a_state_are_the_processor_s_where_they_are_known() {

@@ -1,10 +1,9 @@
 //! Start checks and balances of a record, each with its bound; tables mark what fails here.
 
-use crate::record::{Balance, Record, Status};
+use crate::record::{Balance, Record};
 use oedometer_problem::arrangement::Arrangement;
 use oedometer_problem::formulation::Formulation;
 use oedometer_problem::integrator::IntegratorKind;
-use oedometer_problem::outcome::FailureKind;
 use oedometer_scenes::scene::{Body, Check, LoadKind, Question};
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::wording::{short, typed};
@@ -371,10 +370,7 @@ pub fn complaints(record: &Record) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::record::LayerBalance;
     use oedometer_problem::method::Method;
-    use oedometer_problem::outcome::Failure;
-    use oedometer_scenes::TERZAGHI;
 
     #[test]
     fn a_pressure_may_reach_what_fronts_or_waves_make_of_the_load_and_is_not_judged_where_methods_lock() {

@@ -60,7 +60,6 @@ fn answer(study: &str, runs: &[RunSettlements]) -> Option<Finding> {
 const MOST_PROBLEMS: usize = 4;
 
 /// The settlement of one problem at every output.
-#[derive(Clone)]
 struct RunSettlements {
     /// Label of the run.
     run: String,
@@ -73,7 +72,7 @@ struct RunSettlements {
 }
 
 /// The settlement at one output.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 struct SettlementRow {
     /// Time, s.
     seconds: f64,
@@ -233,8 +232,11 @@ mod tests {
             reference: "terzaghi".to_owned(),
             rows,
         };
-        let shown: Vec<Vec<String>> =
-            table(&[found.clone()]).rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
+        let shown: Vec<Vec<String>> = table(std::slice::from_ref(&found))
+            .rows
+            .iter()
+            .map(|row| row.iter().map(Cell::show).collect())
+            .collect();
         assert_eq!(shown[0], ["365 days", "0.08536", "45.7 %", "33.8", "33.46", "-1.00 %"]);
         assert_eq!(shown[1], ["40 days", "0.08536", "–", "33.8", "–", "–"]);
         let answer = answer("s", &[found]).expect("a run");

@@ -127,10 +127,6 @@ fn states_beside_each_other_are_told_as_they_were() {
         writeln!(text, "## {number}: changed {}, regression {}", found.has_changed(), found.is_regression())
             .expect("memory");
         writeln!(text, "{}", told(&found)).expect("memory");
-        for arrow in &found.arrows {
-            writeln!(text, "arrow {} {} {}", arrow.case, told(&arrow.before), told(&arrow.after))
-                .expect("memory");
-        }
     }
     let state = |name: &str, studies: &[&str]| State {
         name: name.to_owned(),

@@ -8,7 +8,7 @@ use crate::render::chart::multiples::{SIDE_BY_SIDE, side_by_side};
 use crate::render::chart::rows;
 use crate::render::chart::slots::TWIN;
 use crate::render::chart::svg::{
-    Area, Drawn, Font, NARROW, Px, document, group, layer, line, scripted, stroke, units, write,
+    Font, NARROW, Px, document, group, layer, line, scripted, stroke, units, write,
 };
 use crate::render::chart::words::{Frame, Space, rules, triangles};
 use crate::render::chart::{Chart, Naming, Series, Style};
@@ -200,7 +200,7 @@ impl Chart {
             + &rules(&mut space, chart, &layout)?
             + &end_names(chart, &layout)?;
         let below = (PAD, layout.plot.bottom + BELOW + 8.0);
-        let around = layout.legend.elements(layout.size, below)? + &chart.texts(&layout)?;
+        let around = layout.legend.elements(layout.size, below)? + &Self::texts(&layout)?;
         Ok((layout.size, [back, markers, words, around].concat()))
     }
 
@@ -315,7 +315,7 @@ impl Chart {
     }
 
     /// Title, subtitle and notes; a sentence in place of missing data.
-    fn texts(&self, layout: &Layout) -> Result<String, String> {
+    fn texts(layout: &Layout) -> Result<String, String> {
         layer(layout.size, |area| {
             let mut top = PAD - 2.0;
             for (lines, font) in [(&layout.title, TITLE), (&layout.subtitle, SUBTITLE)] {

@@ -181,7 +181,7 @@ fn profile_figure(findings: &RaceFindings, group: Group, read_out: ReadOut) -> F
         ChartAxis::linear("share of problems").between(0.0, 1.0),
     );
     chart.naming = Naming::Ends;
-    chart.size = Size { width: 620.0, plot_height: 440.0, ..Size::default() };
+    chart.size = Size { width: 620.0, plot_height: 440.0 };
     let staircase = |steps: &[(f64, f64)]| {
         let mut points: Vec<(f64, f64)> = Vec::new();
         for (tau, share) in steps.iter().filter(|(tau, _)| *tau <= LARGEST_TAU) {
