@@ -264,6 +264,4 @@ fn a_sweep_of_poisson_s_ratio_in_the_plane_says_who_locks_and_from_where() {
         "{answer}"
     );
     assert!(answer.contains("| `GIMP` | ✗ from ν = 0.25 |"), "{answer}");
-    let page = fs::read_to_string(folder.path().join("made/index.html")).expect("a page");
-    assert_eq!(page.matches(">p/q (–)<").count(), 3, "each of three fields has a colour bar");
 }
