@@ -5,13 +5,14 @@
 """
 import csv
 import json
+import math
 import sys
 from collections import defaultdict
 
 TIE, NEARLY, RESAMPLES, INSIDE = 0.03, 2.0, 2000, 0.9
 TAUS = [1.0, 1.3, 2.0, 5.0, 10.0, 100.0, 1000.0]
 GROUPS, READOUTS = ["moving", "rest", "total"], ["points", "centres"]
-PLACES = {"points": "at the points", "centres": "as means of cells"}
+PLACES = {"points": "sampled at the points", "centres": "averaged over cells"}
 OTHER = {"budget": ["cost_half_budget", "cost_twice_budget"],
          "tolerance": ["cost_half_percent", "cost_2_percent", "cost_5_percent"]}
 
@@ -100,8 +101,14 @@ def leader(race, readout):
             ratios[method].append(cost / min(reached.values()))
     method = min((one for one in ratios if not one.startswith("TL-")), key=lambda one: (-len(ratios[one]), max(ratios[one])))
     as_often = sum(len(of_one) == len(ratios[method]) for one, of_one in ratios.items() if not one.startswith("TL-"))
+    moving = {row["situation"] for row in race.rows if row["group"] == "total"}
+    of_total = {one for one in count_methods(race, "total")}
+    form = lambda name, problem: name if problem in moving else name.removeprefix("TL-")
+    counts = {name: sum(costs.get(form(name, problem)) is not None for problem, costs in problems.items()) for name in of_total}
+    most = max(counts.values(), default=0)
     return {"readout": readout, "method": method, "as_often": as_often, "reached": len(ratios[method]), "of": len(problems),
-            "cheapest": sum(one <= 1 for one in ratios[method]), "dearest": max(ratios[method])}
+            "cheapest": sum(one <= 1 for one in ratios[method]), "dearest": max(ratios[method]),
+            "following": most if most >= len(ratios[method]) else None}
 
 
 def dearest(race, group, readout, method):
@@ -116,14 +123,18 @@ def dearest(race, group, readout, method):
 
 
 def family_answers(race, group, readout):
-    """Per family of a group the methods that tie for the best, how many problems the first reaches, and the range of the least work."""
+    """Per family of a group the methods that tie for the best, how many problems the first reaches, and the range of its work."""
     table, out = race.table(group, readout), {}
     for family in dict.fromkeys(family for family, _ in table):
         rows = [(one, costs) for one, costs in table if one == family]
-        least = [min(reached) for reached in ([c for c in costs.values() if c is not None] for _, costs in rows) if reached]
-        names = set(best(rows)[0])
-        counts = {name: sum(costs[name] is not None for _, costs in rows) for name in names}
-        out[family] = (names, max(counts.values(), default=0), len(rows), [min(least), max(least)] if least else None)
+        own = {name: [costs[name] for _, costs in rows if costs[name] is not None] for name in best(rows)[0]}
+        least = [min(c for c in costs.values() if c is not None) for _, costs in rows if any(c is not None for c in costs.values())]
+        most = max(map(len, own.values()), default=0)
+        # Of those that reach as many the cheapest on the average of the logarithms, whatever its name where several cost the same.
+        mean = lambda name: sum(math.log(costs[name] / min(c for c in costs.values() if c is not None))
+                                for _, costs in rows if costs[name] is not None) / most
+        first = min((name for name in own if len(own[name]) == most), key=lambda name: (round(mean(name), 12)), default=None) if least else None
+        out[family] = (set(own), most, len(rows), [min(own[first]), max(own[first])] if first else None)
     return out
 
 
@@ -151,7 +162,8 @@ def main(folder, turn):
     for one in choice[0].get("leaders", []):
         ours = leader(race, one["readout"])
         for key, value in ours.items():
-            same(f"leader {one['readout']} {key}", value, one[key])
+            told_there = one[key] and one[key]["reached"] if key == "following" else one[key]
+            same(f"leader {one['readout']} {key}", value, told_there)
     for one in choice[0].get("families", []):
         where = f"family {one['family']}, {one['group']}, {one['readout']}"
         names, reached, of, work = family_answers(race, one["group"], one["readout"])[one["family"]]
@@ -184,12 +196,12 @@ def main(folder, turn):
                 listed += f" and {more} other{'s' if more > 1 else ''}" if more > 0 else ""
                 problems = "problem" if first["of"] == 1 else "problems"
                 same(f"{group}, {readout}: sentence", True,
-                     f"read {PLACES[readout]} {listed} ({first['reached']} of {first['of']} {problems})" in page)
+                     f"{PLACES[readout]}, {listed} ({first['reached']} of {first['of']} {problems})" in page)
                 both_ways = lambda name: all(
                     name in best(race.table(group, r))[0] and all(holds(race, group, r, name).values()) for r in READOUTS)
                 strong = next((name for name in names if both_ways(name)), None)
                 words = {"moving": "points that move through the mesh", "rest": "points at rest", "total": "a mesh that follows the soil"}
-                told_strong = [name for name in count_methods(race, group) if f"**For {words[group]} take `{name}`**" in page]
+                told_strong = [name for name in count_methods(race, group) if f"**For {words[group]} use `{name}`**" in page]
                 same(f"{group}, {readout}: strong", [strong] if strong else [], told_strong)
     profiles = defaultdict(list)
     for row in csv.DictReader(open(f"{folder}/tables/profile.csv", encoding="utf-8")):

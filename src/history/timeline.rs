@@ -22,9 +22,11 @@ pub(crate) struct Step {
     /// The reason that the golden file gives.
     pub reason: String,
     /// Cases that the file before had and this one has not.
-    pub went: Vec<String>,
+    #[serde(rename = "went")]
+    pub removed: Vec<String>,
     /// Cases that only this file has.
-    pub came: Vec<String>,
+    #[serde(rename = "came")]
+    pub added: Vec<String>,
     /// Values of the file.
     pub values: usize,
     /// Values that the file before had too.
@@ -35,20 +37,20 @@ pub(crate) struct Step {
     pub work_index: f64,
     /// Values that moved beyond the tolerance of the file before.
     pub moved: usize,
-    /// Values that came or went.
+    /// Values that only one of the two files has.
     pub unpaired: usize,
     /// Largest relative change of an error.
     pub largest_change: f64,
-    /// Where the errors went.
+    /// Whether the errors rose or fell.
     pub accuracy: Trend,
-    /// Where the work went.
+    /// Whether the work rose or fell.
     pub cost: Trend,
 }
 
 impl Step {
-    /// Whether values moved, or cases went or came.
+    /// Whether values moved, or cases were removed or added.
     pub fn has_changed(&self) -> bool {
-        self.moved > 0 || !(self.went.is_empty() && self.came.is_empty())
+        self.moved > 0 || !(self.removed.is_empty() && self.added.is_empty())
     }
 }
 
@@ -117,8 +119,8 @@ impl Step {
         let mut step = Self {
             commit: commit.clone(),
             reason: golden.reason.clone(),
-            went: Vec::new(),
-            came: Vec::new(),
+            removed: Vec::new(),
+            added: Vec::new(),
             values: golden.values.len(),
             shared: golden.values.len(),
             error_index: last.map_or(1.0, |last| last.error_index),
@@ -130,7 +132,7 @@ impl Step {
             cost: Trend::Same,
         };
         let Some(before) = before else { return step };
-        [step.went, step.came] = cases_apart(before.values.keys(), golden.values.keys());
+        [step.removed, step.added] = cases_apart(before.values.keys(), golden.values.keys());
         step.shared = before.values.keys().filter(|key| golden.values.contains_key(*key)).count();
         step.error_index *= mean_ratio(before, golden, |key| key.measure.is_error());
         step.work_index *= mean_ratio(before, golden, |key| key.measure == Measure::Steps);

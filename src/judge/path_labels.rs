@@ -1,6 +1,8 @@
 //! Labels of paths that stand side by side: what differs, and what all share.
 
+use crate::case::SolverName;
 use crate::judge::paths::Path;
+use oedometer_problem::method::{FULL_PROJECTION, Method};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Labels of paths that share a figure or a table: what differs, and what all share.
@@ -20,9 +22,22 @@ fn short(part: &str) -> String {
     }
 }
 
+/// The name of a method with another share of the published projection: `PPP(0.5)`, not its choices one by one.
+fn scaled_name(path: &Path<'_>) -> Option<String> {
+    let SolverName::Own(method) = path.records[0].case.method else { return None };
+    let full = Method { projection: FULL_PROJECTION, ..method }.to_string();
+    let is_scaled = method.projection != FULL_PROJECTION && Method::named(&full).is_some();
+    is_scaled.then(|| format!("{full}({})", f64::from(method.projection) / f64::from(FULL_PROJECTION)))
+}
+
 /// Splits the labels of paths into what differs and what is shared; the method is always named.
 pub fn path_labels(paths: &[Path<'_>]) -> PathLabels {
     let mut parts: Vec<Vec<String>> = paths.iter().map(Path::parts).collect();
+    for (own, path) in parts.iter_mut().zip(paths) {
+        if let Some(name) = scaled_name(path) {
+            own[0] = name;
+        }
+    }
     // Explicit steps follow their limit and are told only where nothing else tells two paths apart.
     let alike = |own: &Vec<String>| parts.iter().filter(|other| *other == own).count() > 1;
     let alike: Vec<bool> = parts.iter().map(alike).collect();
@@ -63,6 +78,15 @@ mod tests {
         );
         let labels = path_labels(&paths(&records, Axis::Cells));
         assert_eq!(labels.each, ["MPM, stable=0.5", "MPM, stable=0.9"]);
+    }
+
+    #[test]
+    fn a_scaled_projection_keeps_the_name_of_its_method() {
+        let records = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\n\
+             method = ['PPP', { basis = 'cpgimp', strain = 'standard', pressure = 'points', recovery = 'ppp', projection = 0.5 }]\nintegrator = ['implicit']\ncells = [2, 4]\n",
+        );
+        assert_eq!(path_labels(&paths(&records, Axis::Cells)).each, ["PPP", "PPP(0.5)"]);
     }
 
     #[test]

@@ -56,14 +56,14 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
 /// The worst of every check, and the largest of every dimensionless group.
 fn worst_checks(checks: &[RecordCheck], records: &[Record]) -> Table {
     let check =
-        |check: &RecordCheck| vec![check.what.into(), Cell::Error(check.value.abs()), bound_cell(check)];
+        |check: &RecordCheck| vec![check.what.into(), Cell::Measured(check.value.abs()), bound_cell(check)];
     let largest = records.iter().map(groups_of).reduce(|mut largest, groups| {
         for (largest, group) in largest.iter_mut().zip(groups) {
             largest.1 = largest.1.max(group.1);
         }
         largest
     });
-    let group = |(what, value): (&str, f64)| vec![what.into(), Cell::Error(value), "".into()];
+    let group = |(what, value): (&str, f64)| vec![what.into(), Cell::Measured(value), "".into()];
     let rows = checks.iter().map(check).chain(largest.into_iter().flatten().map(group));
     let header = "what | > worst of all runs | bound";
     Table::of("Start checks, balances and groups", columns(header), rows).file("checks")
@@ -184,7 +184,7 @@ mod tests {
         let (told, found) = answer(&records);
         let table = found.tables()[0];
         let last: Vec<&Cell> = table.rows.iter().rev().take(3).map(|row| &row[1]).collect();
-        assert_eq!(last, [&Cell::Error(0.007), &Cell::Error(0.05), &Cell::Error(0.3)]);
+        assert_eq!(last, [&Cell::Measured(0.007), &Cell::Measured(0.05), &Cell::Measured(0.3)]);
         let judged = table.rows.iter().filter(|row| row[2].show().starts_with('✓')).count();
         assert_eq!(told, format!("In 2 runs, {judged} of {judged} checks are within bounds."));
         for value in [f64::NEG_INFINITY, f64::NAN, -0.5] {
@@ -194,7 +194,7 @@ mod tests {
             let named = "Out of bounds: `mass of solids, drift`.";
             assert_eq!(told, format!("In 2 runs, {held} of {judged} checks are within bounds. {named}"));
             let row = found.tables()[0].rows.iter().find(|row| row[2].show().starts_with('✗'));
-            assert_eq!(row.expect("a failure")[1].show(), Cell::Error(value.abs()).show());
+            assert_eq!(row.expect("a failure")[1].show(), Cell::Measured(value.abs()).show());
         }
     }
 }

@@ -1,10 +1,12 @@
 //! Which method should I take? The answers of the race with where they hold, the families of problems, and the problems one by
 //! one.
 
+use crate::campaign::refinement::MOST_WORK;
 use crate::case::contender::PAPERS;
 use crate::case::grouping::{distinct, grouped};
 use crate::judge::study_results::StudyResults;
 use crate::questions::finding::{Finding, Place, Question};
+use crate::questions::words::COUNTED_WORK;
 use crate::race::RaceFindings;
 use crate::race::answer::Answer;
 use crate::race::finish::{Reason, Terms};
@@ -30,16 +32,16 @@ pub static CHOICE: Question = Question {
     ask,
 };
 
-/// The default, the paper's method, one whose mesh follows, and the plainest, each with a word on it.
+/// A method that does not lock, the paper's, one whose mesh follows, and the plainest, each with a word on it.
 pub const SHOWN: [(&str, &str); 4] = [
-    ("GC-Bbar-patch", "the default"),
+    ("GC-Bbar-patch", "does not lock"),
     (PAPERS, "the paper's"),
-    ("TL-GC-SRI-patch", "mesh follows"),
+    ("TL-GC-Bbar-patch", "mesh follows"),
     ("MPM", "plain"),
 ];
 /// The largest multiple of the least cost that figures show.
 pub const LARGEST_TAU: f64 = 100.0;
-/// Families of problems, in words.
+/// Families of problems, in words, with letters from A in this order.
 const FAMILIES: [(&str, &str); 8] = [
     ("column", "small strain, column"),
     ("footing", "footing at collapse"),
@@ -60,12 +62,22 @@ pub fn words_of(group: Group) -> &'static str {
     }
 }
 
-/// Where fields are read, in words.
+/// Where fields are sampled, in words.
 pub fn places_of(read_out: ReadOut) -> &'static str {
     match read_out {
-        ReadOut::Points => "at the points",
-        ReadOut::Centres => "as means of cells",
+        ReadOut::Points => "sampled at the points",
+        ReadOut::Centres => "averaged over cells",
     }
+}
+
+/// The place of a family in the order of all.
+fn place_of(family: &str) -> usize {
+    FAMILIES.iter().position(|(name, _)| *name == family).unwrap_or(FAMILIES.len())
+}
+
+/// The letter of a family, which links its rows in the figure and in the table.
+fn letter_of(family: &str) -> String {
+    u8::try_from(place_of(family)).map_or(String::new(), |place| char::from(b'A' + place).to_string())
 }
 
 /// Every number and name of the sentences.
@@ -123,14 +135,21 @@ struct ReadAnswer {
     changes_with: Vec<String>,
 }
 
+/// A method whose mesh follows the soil.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Following {
+    /// The method.
+    pub method: String,
+    /// Problems in which it reaches 1 %; where nothing moves it is the method whose mesh stays.
+    pub reached: usize,
+}
+
 /// Who reaches 1 % most often of the methods for all problems, those whose mesh stays, and at what price.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Leader {
     /// Where fields are read.
     #[serde(rename = "readout")]
     pub read_out: ReadOut,
-    /// Where fields are read, in words.
-    places: String,
     /// The method; of several that reach it as often the one that costs the least times the cheapest at worst.
     pub method: String,
     /// It and the others that reach it as often, in words.
@@ -143,6 +162,8 @@ pub struct Leader {
     pub of: usize,
     /// Its largest cost over that of the cheapest method, of any group.
     pub dearest: f64,
+    /// The method whose mesh follows the soil that reaches it most often, where that is at least as often.
+    pub following: Option<Following>,
 }
 
 /// What to take in a family of problems.
@@ -161,7 +182,7 @@ pub struct FamilyAnswer {
     pub reached: usize,
     /// Problems.
     pub of: usize,
-    /// Least work to 1 % of any method of the group in the easiest and the hardest problem that is reached, s.
+    /// Work to 1 % of the first in the easiest and the hardest problem that it reaches, s.
     pub work: Option<[f64; 2]>,
 }
 
@@ -221,7 +242,7 @@ fn group_answers(race: &RaceFindings) -> Vec<GroupAnswer> {
             (holds.time, "the output"),
             (holds.budget, "the budget"),
             (holds.tolerance, "the tolerance"),
-            (holds.read_out, "the read-out"),
+            (holds.read_out, "the sampling"),
         ];
         Some(ReadAnswer {
             places: places_of(read_out).to_owned(),
@@ -255,22 +276,26 @@ fn group_answers(race: &RaceFindings) -> Vec<GroupAnswer> {
 fn leader(race: &RaceFindings, read_out: ReadOut) -> Option<Leader> {
     let terms = Terms::usual(read_out);
     let of_method = |method: &str| {
-        let ratios = race.situations.iter().filter_map(|one| ratio(one, one.entry(method)?, &terms));
+        let ratios = race.situations.iter().filter_map(|one| ratio(one, entry_of(one, method)?, &terms));
         let ratios: Vec<f64> = ratios.collect();
         Leader {
             read_out,
-            places: places_of(read_out).to_owned(),
             method: method.to_owned(),
             who: method.to_owned(),
             as_often: 1,
             reached: ratios.len(),
             of: race.situations.len(),
             dearest: ratios.into_iter().fold(1.0, f64::max),
+            following: None,
         }
     };
-    let everywhere = methods(race).into_iter().filter(|method| Group::Moving.takes(method));
-    let mut all: Vec<Leader> = everywhere.map(of_method).collect();
-    all.sort_by(|a, b| (Reverse(a.reached)).cmp(&Reverse(b.reached)).then(a.dearest.total_cmp(&b.dearest)));
+    let ranked = |group: Group| {
+        let mut all: Vec<Leader> =
+            methods(race).into_iter().filter(|method| group.takes(method)).map(of_method).collect();
+        all.sort_by(|a, b| Reverse(a.reached).cmp(&Reverse(b.reached)).then(a.dearest.total_cmp(&b.dearest)));
+        all
+    };
+    let all = ranked(Group::Moving);
     let first = all.first().filter(|one| one.reached > 0)?.clone();
     let equals: Vec<&str> =
         all.iter().take_while(|one| one.reached == first.reached).map(|one| one.method.as_str()).collect();
@@ -280,7 +305,9 @@ fn leader(race: &RaceFindings, read_out: ReadOut) -> Option<Leader> {
         [one, ref others @ ..] => format!("{one} and {} others", others.len()),
         [] => return None,
     };
-    Some(Leader { who, as_often: equals.len(), ..first })
+    let following = ranked(Group::Total).into_iter().next().filter(|one| one.reached >= first.reached);
+    let following = following.map(|one| Following { method: one.method, reached: one.reached });
+    Some(Leader { who, as_often: equals.len(), following, ..first })
 }
 
 fn family_answers(race: &RaceFindings, group: Group, read_out: ReadOut) -> Vec<FamilyAnswer> {
@@ -300,9 +327,9 @@ fn family_answers(race: &RaceFindings, group: Group, read_out: ReadOut) -> Vec<F
         let mut best: Vec<(&str, (usize, f64))> =
             table.best().into_iter().map(|method| (method, worth(method))).collect();
         best.sort_by(|(_, a), (_, b)| b.0.cmp(&a.0).then(a.1.total_cmp(&b.1)));
-        let least = table.rows.iter().filter_map(|row| row.costs.iter().flatten().copied().reduce(f64::min));
-        let least: Vec<f64> = least.collect();
-        let work = least.iter().copied().reduce(f64::min).zip(least.iter().copied().reduce(f64::max));
+        let first = best.first().and_then(|(first, _)| table.methods.iter().position(|one| one == first));
+        let own = || table.rows.iter().filter_map(|row| row.costs[first?]);
+        let work = own().reduce(f64::min).zip(own().reduce(f64::max));
         FamilyAnswer {
             group,
             read_out,
@@ -352,7 +379,7 @@ fn entry_of<'a>(situation: &'a Situation, method: &str) -> Option<&'a Entry> {
 fn plotted(race: &RaceFindings, read_out: ReadOut) -> Vec<(String, &'static str)> {
     let leader = leader(race, read_out).map(|one| one.method);
     let most = leader.iter().filter(|method| SHOWN.iter().all(|(name, _)| name != method));
-    let most = most.map(|method| (method.clone(), "most often"));
+    let most = most.map(|method| (method.clone(), "leads on a fixed mesh"));
     most.chain(SHOWN.iter().map(|(name, word)| ((*name).to_owned(), *word))).collect()
 }
 
@@ -362,7 +389,7 @@ fn cheapest_of_most(race: &RaceFindings, terms: &Terms) -> String {
         race.situations.iter().filter_map(|one| Some(cheapest(one, terms, |_| true)?.0.contender.as_str()));
     let mut methods = grouped(first, |method| *method);
     methods.sort_by_key(|(_, problems)| Reverse(problems.len()));
-    methods.first().map_or("No method arrives".to_owned(), |(method, problems)| {
+    methods.first().map_or("No method reaches 1 %".to_owned(), |(method, problems)| {
         format!("{method} is the cheapest most often, in {} of {}", problems.len(), race.situations.len())
     })
 }
@@ -383,13 +410,13 @@ pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
         (LARGEST_TAU, "× 100"),
     ];
     let mut chart = Chart::new(
-        format!("{}: work to 1 %, read {}", cheapest_of_most(race, &terms), places_of(read_out)),
+        format!("{}: work to 1 %, {}", cheapest_of_most(race, &terms), places_of(read_out)),
         ChartAxis::log10("Work over the cheapest")
             .between(1.0, LARGEST_TAU)
             .with_labelled_ticks(ticks.map(|(tau, words)| (tau, words.to_owned()))),
         ChartAxis::linear("row"),
     );
-    chart.size = Size { width: 1000.0, ..Size::default() };
+    chart.size = Size { width: 950.0, ..Size::default() };
     for (name, slot) in names.iter().zip(slots(&names)) {
         let points = race.situations.iter().enumerate().filter_map(|(place, situation)| {
             Some((ratio(situation, entry_of(situation, name)?, &terms)?, place as f64))
@@ -407,10 +434,15 @@ pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
     });
     let caption = match read_out {
         ReadOut::Points => {
-            "At the right: dearer. *Budget*: the error still falls when the meshes end; *plateau*: it stays; *inaccurate*: it is \
-             large and stays, or ends the run. Work, here and everywhere: counted operations times their calibrated times."
+            let [column, plane] = MOST_WORK.map(number::number);
+            format!(
+                "Farther right: dearer; equal marks are stacked. *Budget*: the error still fell on the finest mesh allowed, of {column} s \
+                 of work ({plane} s in the plane); *plateau*: it no longer fell; *locks*: too little settlement; *inaccurate*: large \
+                 errors that do not fall, or a run that ends early. Work: {COUNTED_WORK}. Cells: over the height. Step: of the elapsed \
+                 time t or of the critical step t_c."
+            )
         }
-        ReadOut::Centres => "Marks and words as where fields are read at the points.",
+        ReadOut::Centres => "Marks and words as where fields are sampled at the points.".to_owned(),
     };
     Figure::new(format!("race-problems-{}", read_out.name()), chart, caption)
 }
@@ -428,15 +460,24 @@ fn plotted_row(situation: &Situation, methods: &[&str], terms: &Terms) -> ChartR
             entry.contender.clone(),
             number::short(1e3 * cost),
             arrival.cells.to_string(),
-            arrival.step.replace('=', " "),
+            step_words(&arrival.step),
         ],
         None => vec![nearest(situation, terms)],
     };
     ChartRow {
         name: situation.title.clone(),
-        family: situation.family.clone(),
+        family: letter_of(&situation.family),
         without: without.collect(),
         words,
+    }
+}
+
+/// A rule of steps in short: a share of the elapsed time, or of the critical step.
+fn step_words(rule: &str) -> String {
+    match rule.split_once('=') {
+        Some(("growth", share)) => format!("{share} t"),
+        Some(("stable", share)) => format!("{share} t_c"),
+        _ => rule.replace('=', " "),
     }
 }
 
@@ -456,32 +497,30 @@ fn nearest(situation: &Situation, terms: &Terms) -> String {
 pub fn family_table(facts: &Facts, read_out: ReadOut) -> Table {
     let mut families: Vec<&FamilyAnswer> =
         facts.families.iter().filter(|one| one.read_out == read_out).collect();
-    families.sort_by_key(|one| FAMILIES.iter().position(|(name, _)| *name == one.family));
+    families.sort_by_key(|one| place_of(&one.family));
     let rows = families.into_iter().map(|one| {
         let milliseconds = |work: f64| number::short(1e3 * work);
         let work = one.work.map(|[least, most]| {
             let both = [least, most].map(milliseconds);
             if both[0] == both[1] { both[0].clone() } else { both.join(" – ") }
         });
-        let others = one.methods.len().saturating_sub(1);
-        let method = one.methods.first().map(|method| match others {
-            0 => format!("`{method}`"),
-            others => format!("`{method}` + {others}"),
-        });
+        let none = || Cell::Text(String::new());
         vec![
+            letter_of(&one.family).into(),
             one.words().into(),
-            Cell::Text(method.unwrap_or_else(|| "none".to_owned())),
+            one.methods.first().map_or("none".into(), |method| Cell::Code(method.clone())),
+            one.methods.len().checked_sub(2).map_or_else(none, |more| Cell::Count(more as u64 + 1)),
             format!("{} of {}", one.reached, one.of).into(),
             Cell::Text(work.unwrap_or_default()),
         ]
     });
     Table::of(
         "If your problem is …, and what 1 % costs",
-        columns("your problem | take | > 1 % in | > ms"),
+        columns("| your problem | use | > ties | > 1 % in | > its ms"),
         rows,
     )
     .file(format!("families-{}", read_out.name()))
-    .note("+: number of other methods that are as good; ms: the least work, easiest to hardest problem")
+    .note("ties: other methods that are as good; ms: work of the method named, easiest to hardest problem")
 }
 
 /// Methods whose cost stands beside the cheapest.
@@ -504,7 +543,7 @@ pub fn practice(findings: &RaceFindings, read_out: ReadOut) -> Table {
                 Cell::Code(entry.contender.clone()),
                 Cell::Count(arrival.cells as u64),
                 arrival.step.into(),
-                Cell::Number(1e3 * cost),
+                Cell::Measured(1e3 * cost),
             ]),
             _ => row.extend(std::iter::repeat_n(Cell::missing("no method reaches 1 %"), 4)),
         }
@@ -518,20 +557,19 @@ pub fn practice(findings: &RaceFindings, read_out: ReadOut) -> Table {
         findings.situations.iter().filter(move |one| group.has(one)).map(move |one| row(group, one))
     });
     let heads = format!(
-        "group | problem | cheapest | > cells | step | > work [ms] | > {} | > {} | > {}",
+        "group | problem | cheapest | > cells | step | > work [ms] | > {} [×] | > {} [×] | > {} [×]",
         BESIDE[0], BESIDE[1], BESIDE[2]
     );
-    Table::of(format!("What 1 % takes, read {}", places_of(read_out)), columns(&heads), rows).note(
-        "last columns: work relative to the cheapest, or why 1 % is not reached; where the mesh \
-               follows the soil, their TL- forms",
+    Table::of(format!("What 1 % takes, {}", places_of(read_out)), columns(&heads), rows).note(
+        "×: work over that of the cheapest, or why 1 % is not reached; where the mesh follows the soil, of the TL- forms",
     )
 }
 
 fn regret(situation: &Situation, name: &str, terms: &Terms, least: Option<f64>) -> Cell {
     let Some(entry) = situation.entry(name) else { return Cell::missing("not among the methods") };
     match (situation.arrival(entry, terms), least, situation.reason(entry, terms)) {
-        (Some(arrival), Some(least), _) => format!("× {}", number::short(arrival.cost / least)).into(),
-        (_, _, Some(reason)) => reason_words(reason).into(),
+        (Some(arrival), Some(least), _) => Cell::Measured(arrival.cost / least),
+        (_, _, Some(reason)) => reason.word().into(),
         _ => Cell::missing("not run"),
     }
 }

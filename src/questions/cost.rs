@@ -126,13 +126,13 @@ fn chart(precision: &WorkPrecision<'_>) -> Chart {
 
 fn table(precision: &WorkPrecision<'_>) -> Table {
     let rows = precision.cheapest.iter().map(|cheapest| {
-        let mut row = vec![Cell::Percent(cheapest.tolerance)];
+        let mut row = vec![Cell::Bound(cheapest.tolerance)];
         row.extend(cheapest.run.iter().flat_map(|run| {
             let (case, counters) = (&run.record.case, &run.record.counters);
             [
                 Cell::Code(case.label()),
                 Cell::Error(run.error),
-                Cell::Number(1e3 * run.work),
+                Cell::Measured(1e3 * run.work),
                 Cell::Count(counters.steps),
                 Cell::Count(counters.point_updates),
                 if cheapest.is_confirmed { "yes" } else { "no" }.into(),
@@ -180,10 +180,10 @@ mod tests {
         );
         let table = found.tables()[0];
         let expected = [
-            Cell::Percent(1e-2),
+            Cell::Bound(1e-2),
             Cell::Code(label),
             Cell::Error(0.0071),
-            Cell::Number(11.0),
+            Cell::Measured(11.0),
             Cell::Count(counters.steps),
             Cell::Count(counters.point_updates),
             "yes".into(),

@@ -6,6 +6,7 @@ use crate::judge::study_results::StudyResults;
 use crate::questions::finding::{Finding, Place, Question};
 use crate::record::{Record, Status};
 use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
+use crate::render::number;
 use crate::render::page::{Block, Figure};
 use oedometer_exact::footing::LOAD_FACTOR;
 
@@ -29,16 +30,14 @@ struct Facts {
     undrained: String,
     /// The exact collapse load over width and strength, `2 + π`.
     exact: f64,
-    /// Methods whose load stays below so much of it.
+    /// Methods whose last load is off by no more than so much of it.
     kept_methods: Vec<String>,
     /// How much.
-    kept_below: f64,
+    kept_within: f64,
 }
 
-/// Top of the figure, over the exact collapse load; the line of a method that locks leaves it.
-const HIGHEST: f64 = 2.5;
-/// A method keeps the collapse load where its largest load is below so much of it.
-const KEPT_BELOW: f64 = 1.1;
+/// A method keeps the collapse load where its last load is off by no more than this; the figure shows as much on both sides.
+const KEPT_WITHIN: f64 = 0.05;
 
 /// All runs kept undrained as in the study's first case.
 fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
@@ -55,10 +54,11 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
     let methods_on = |cells: usize| of_methods.iter().filter(|(_, own)| has(own, cells)).count();
     let meshes = of_methods.iter().flat_map(|(_, own)| own.iter().map(|record| record.case.cells));
     let cells = meshes.max_by_key(|cells| (methods_on(*cells), *cells))?;
+    let [low, high] = [1.0 - KEPT_WITHIN, 1.0 + KEPT_WITHIN].map(|share| share * LOAD_FACTOR);
     let mut chart = Chart::new(
-        "Load and settlement of the plate",
+        "",
         ChartAxis::linear("settlement over the width u/B (–)"),
-        ChartAxis::linear("bearing-capacity factor F/(B c_u) (–)").between(0.0, HIGHEST * LOAD_FACTOR),
+        ChartAxis::linear("bearing-capacity factor F/(B c_u) (–)").between(low, high),
     );
     chart.size = Size::PANEL;
     for (method, own) in &of_methods {
@@ -68,24 +68,40 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
             chart.series.push(series.style(Style::Line));
         }
     }
-    let is_kept = |series: &&Series| series.points.iter().all(|(_, load)| *load < KEPT_BELOW * LOAD_FACTOR);
+    let ends_at = |series: &Series| series.points.last().map_or(f64::NAN, |(_, load)| load / LOAD_FACTOR - 1.0);
+    let ends: Vec<(String, f64)> = chart.series.iter().map(|one| (one.name.clone(), ends_at(one))).collect();
+    let (kept, off): (Vec<_>, Vec<_>) = ends.into_iter().partition(|(_, end)| end.abs() <= KEPT_WITHIN);
+    chart.title = title_of(&kept, chart.series.len());
     let facts = Facts {
         methods: chart.series.len(),
         cells,
         undrained: undrained.name().to_owned(),
         exact: LOAD_FACTOR,
-        kept_methods: chart.series.iter().filter(is_kept).map(|series| series.name.clone()).collect(),
-        kept_below: KEPT_BELOW - 1.0,
+        kept_methods: kept.into_iter().map(|(method, _)| method).collect(),
+        kept_within: KEPT_WITHIN,
     };
     let ends = chart.series.iter().flat_map(|series| &series.points).map(|(settlement, _)| *settlement);
     let end = ends.fold(0.0, f64::max);
     chart.series.push(Series::theory("2 + π", vec![(0.0, LOAD_FACTOR), (end, LOAD_FACTOR)]));
-    let figure = Figure::new(
-        "load-settlement",
-        chart,
-        "The line of a method that locks leaves the figure at the top.",
-    );
+    let figure = Figure::new("load-settlement", chart, caption_of(&off));
     Some(LOAD_CURVES.answer([one.study.name.as_str()], &facts).with(Block::Figures(vec![figure])))
+}
+
+/// How many methods end near the exact load, and which ends nearest.
+fn title_of(kept: &[(String, f64)], methods: usize) -> String {
+    let within = number::rounded_percent(KEPT_WITHIN);
+    let nearest = kept.iter().min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    let nearest = nearest.map_or(String::new(), |(method, end)| {
+        format!("; {method} is nearest, {} off", number::percent(end.abs()))
+    });
+    format!("{} of {methods} methods end within {within} of the collapse load{nearest}", kept.len())
+}
+
+/// Which lines end outside of the figure, and where.
+fn caption_of(off: &[(String, f64)]) -> String {
+    let ends = off.iter().map(|(method, end)| format!("{method} at {} times the exact load", number::short(1.0 + end)));
+    let ends = ends.collect::<Vec<_>>().join(", ");
+    if off.is_empty() { "All lines end within the figure.".to_owned() } else { format!("Off the scale at the end: {ends}.") }
 }
 
 #[cfg(test)]
@@ -157,6 +173,12 @@ mod tests {
         let (caption, curves) = drawn(&study, &records);
         assert!(caption.contains("on 4 cells") && curves.len() == 3, "{caption} {curves:?}");
         assert!(curves.iter().all(|(_, end)| *end == 4.0), "{curves:?}");
+        // Half of the exact load and four times of it are named, as the figure does not show them.
+        let off = [("A", -0.5), ("B", 3.0)].map(|(name, end)| (name.to_owned(), end));
+        assert_eq!(caption_of(&off), "Off the scale at the end: A at 0.50 times the exact load, B at 4.0 times the exact load.");
+        let kept = [("A", 0.04), ("B", -0.011)].map(|(name, end)| (name.to_owned(), end));
+        assert_eq!(title_of(&kept, 3), "2 of 3 methods end within 5 % of the collapse load; B is nearest, 1.10 % off");
+        assert_eq!(title_of(&[], 1), "0 of 1 methods end within 5 % of the collapse load");
         for (study, records) in [(&study, &[][..]), (&study, &records[1..2]), (&column, &records)] {
             assert_eq!(found(study, records), None);
         }

@@ -1,7 +1,7 @@
 //! How does the pressure fall? Isochrones of the pore pressure and the degree of consolidation of a column beside theory's.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::judge::paths::{first_measure, grouped};
+use crate::judge::paths::{first_error, first_measure, grouped};
 use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::largest;
 use crate::measure::theory::{
@@ -14,6 +14,7 @@ use crate::record::{Record, Status};
 use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::number;
 use crate::render::page::{Block, Figure, slug};
+use crate::study::expectation::Axis;
 use oedometer_exact::ExactError;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_scenes::scene::{Clock, Question as SceneQuestion};
@@ -53,8 +54,12 @@ fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
     // The first and the last method of the study: the plainest and the paper's.
     let ends = shown.first().into_iter().chain(shown.last());
     let mut figures = ends.map(|record| isochrones(record, own)).collect::<Result<Vec<_>, _>>()?;
-    // A half-space has no settlement in the end.
-    if scene.clock != Clock::HalfSpace && !coincide(own, &shown) {
+    for (figure, record) in figures.iter_mut().zip([shown[0], shown[shown.len() - 1]]) {
+        figure.caption += &too_coarse(record, one.records, own).unwrap_or_default();
+    }
+    // Neither a half-space nor a free wave has a settlement in the end.
+    let has_end = scene.clock != Clock::HalfSpace && (scene.is_loaded() || !scene.waves);
+    if has_end && !coincide(own, &shown) {
         figures.push(consolidation(&shown, own)?);
     }
     let (cells, methods) = (shown[0].case.cells, shown.len());
@@ -107,8 +112,9 @@ pub fn isochrones(record: &Record, own: ReferenceKind) -> Result<Figure, ExactEr
     let case = &record.case;
     let (method, has_waves) = (case.method.to_string(), case.scene.waves);
     let pressure = ChartAxis::linear("excess pore pressure p/q (–)");
+    let off = largest_error(record, Quantity::Pressure, record.main_sample(), own.name());
     let mut chart = Chart::new(
-        format!("Isochrones, {method}"),
+        words::capitalised(&off_theory("pressure", &method, off)),
         if has_waves { pressure } else { pressure.between(0.0, 1.05) },
         ChartAxis::linear(depth_name(own.name())).between(0.0, 1.0).inverted(),
     );
@@ -156,13 +162,57 @@ pub fn consolidation(shown: &[&Record], own: ReferenceKind) -> Result<Figure, Ex
     let series: Vec<Series> = std::iter::once(theory).chain(shown.iter().enumerate().map(run)).collect();
     let degree = ChartAxis::linear("degree of consolidation by settlement U (–)");
     let mut chart = Chart::new(
-        "Degree of consolidation",
+        settlement_title(shown, own.name()),
         ChartAxis::log10("time factor T_v (–)"),
         degree.between(0.0, end_of_axis(&series)).inverted(),
     );
     chart.size = Size::PANEL;
     chart.series = series;
     Ok(Figure::new("consolidation", chart, "Settlement over its final value."))
+}
+
+/// How far a result is from theory at the output where it is farthest.
+pub fn off_theory(what: &str, method: &str, found: Option<(f64, f64)>) -> String {
+    found.map_or(format!("{what} of {method} beside theory"), |(error, time)| {
+        format!("{what} of {method} is up to {} off, at T_v = {}", number::percent(error), number::time_factor(time))
+    })
+}
+
+/// The settlement of the method that is nearest to theory, and of that which is farthest.
+fn settlement_title(shown: &[&Record], reference: &str) -> String {
+    let off = |record: &&&Record| largest_error(record, Quantity::Settlement, Sample::Surface, reference);
+    let name = |record: &Record| record.case.method.to_string();
+    let mut ranked: Vec<(&Record, (f64, f64))> =
+        shown.iter().filter_map(|record| Some((*record, off(&record)?))).collect();
+    ranked.sort_by(|a, b| a.1.0.total_cmp(&b.1.0));
+    let nearest = ranked.first().map(|(record, off)| off_theory("settlement", &name(record), Some(*off)));
+    let farthest = ranked.last().filter(|_| ranked.len() > 1);
+    let farthest = farthest.map(|(record, off)| format!("; of {} up to {}", name(record), number::percent(off.0)));
+    let title = nearest.map_or("settlement beside theory".to_owned(), |nearest| nearest + &farthest.unwrap_or_default());
+    words::capitalised(&title)
+}
+
+/// The largest error over all outputs, and its time factor.
+pub fn largest_error(record: &Record, quantity: Quantity, sample: Sample, reference: &str) -> Option<(f64, f64)> {
+    let error = |time: &f64| Some(first_error(record, quantity, sample, reference, *time)?.abs());
+    let errors = record.case.time_factors.iter().filter_map(|time| Some((error(time)?, *time)));
+    errors.max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// Error of a pressure beyond which a figure says that a finer mesh has less.
+const COARSE: f64 = 0.1;
+
+/// That the mesh of a figure is too coarse, and how far off the finest of the same runs is; `None` where it is not.
+fn too_coarse(record: &Record, records: &[Record], own: ReferenceKind) -> Option<String> {
+    let off = |record: &Record| largest_error(record, Quantity::Pressure, record.main_sample(), own.name());
+    let shared = |record: &Record| Axis::Cells.what_is_shared(&record.case);
+    let is_alike = |one: &&Record| one.status == Status::Ok && shared(one) == shared(record);
+    let finest = records.iter().filter(is_alike).max_by_key(|one| one.case.cells)?;
+    let ((off, _), (least, _)) = (off(record)?, off(finest)?);
+    (off > COARSE && least < off / 2.0).then(|| {
+        let [cells, finest] = [record, finest].map(|record| record.case.cells);
+        format!(" {cells} cells are too few here: on {finest} the pressure is up to {} off.", number::percent(least))
+    })
 }
 
 /// Relative difference up to which settlements share one marker.

@@ -217,6 +217,12 @@ impl<'a> SeriesTable<'a> {
         matches!(self.axis, Axis::Cells | Axis::TimeStep)
     }
 
+    /// Whether the order of some series has not settled: then each has its class beside it.
+    fn has_classes(&self) -> bool {
+        let is_unsettled = |one: &Series<'_>| one.class().is_some_and(|class| !class.is_settled());
+        self.has_orders() && self.series.iter().any(is_unsettled)
+    }
+
     /// The run at a level that failed, of the path of a record.
     pub fn failed_at(&self, of: &Record, place: usize) -> Option<&'a Record> {
         let shared = self.axis.what_is_shared(&of.case);
@@ -227,8 +233,8 @@ impl<'a> SeriesTable<'a> {
         self.failed.iter().find(is_it).copied()
     }
 
-    /// A row per series: its errors, and its order with the class, where there are levels enough for one. The means of cells
-    /// are for figures.
+    /// A row per series: its errors, its order and its class, where there are levels enough for one. The means of cells are for
+    /// figures.
     pub fn table(&self, file: &str) -> Table {
         let mut columns = vec![TableColumn::text("method"), TableColumn::text("error of")];
         let first = level_name(self.levels[0].1, self.axis);
@@ -239,6 +245,9 @@ impl<'a> SeriesTable<'a> {
         }));
         if self.has_orders() {
             columns.push(TableColumn::number("order"));
+        }
+        if self.has_classes() {
+            columns.push(TableColumn::text("class"));
         }
         let shown = self.series.iter().filter(|one| one.measured.1 != Sample::Centres);
         let rows: Vec<Vec<Cell>> = shown.map(|one| self.row(one)).collect();
@@ -271,12 +280,11 @@ impl<'a> SeriesTable<'a> {
             LevelError::NotRun => Cell::missing("not run"),
         }));
         if self.has_orders() {
-            row.push(match (one.class(), one.order()) {
-                (None, Some(order)) => Cell::Order(order),
-                (Some(class), Some(order)) if class.is_settled() => Cell::Order(order),
-                (Some(class), order) => words::order_or_class(class, order).into(),
-                (None, None) => Cell::missing("too few levels for an order"),
-            });
+            let why = if one.class().is_some() { "its class has none" } else { "too few levels for an order" };
+            row.push(Cell::of(one.order(), Cell::Order, why));
+        }
+        if self.has_classes() {
+            row.push(one.class().map_or(Cell::missing("of fewer than three levels"), |class| class.name().into()));
         }
         row
     }
@@ -367,7 +375,7 @@ mod tests {
         assert_eq!(gimp.0, [NotRun, of(8.0), of(10.0), of(20.0), NotRun]);
         assert_eq!(mpm.2, Some(1.0));
         let heads: Vec<&str> = table.columns.iter().map(|column| column.header.as_str()).collect();
-        assert_eq!(heads, ["method", "error of", "5 cells", "8", "10", "20", "40", "order"]);
+        assert_eq!(heads, ["method", "error of", "5 cells", "8", "10", "20", "40", "order", "class"]);
         let rows: Vec<String> = table.rows.iter().map(|row| row[1].show()).collect();
         assert_eq!(rows, ["pore pressure", "effective stress", "settlement"].repeat(2));
         records[1].status = failed_at(3);
@@ -403,7 +411,8 @@ mod tests {
             let table = found.table("t");
             let heads: Vec<&str> = table.columns[2..5].iter().map(|column| column.header.as_str()).collect();
             assert_eq!(heads, names);
-            assert_eq!(table.columns.len() == 6, [Axis::Cells, Axis::TimeStep].contains(&axis), "{axis:?}");
+            let has_order = table.columns.iter().any(|column| column.header == "order");
+            assert_eq!(has_order, [Axis::Cells, Axis::TimeStep].contains(&axis), "{axis:?}");
         }
     }
 }

@@ -150,7 +150,7 @@ fn table(all: &[RunSettlements]) -> Table {
 }
 
 fn cells_of(row: &SettlementRow) -> Vec<Cell> {
-    let millimetres = |metres: f64| number::number(1e3 * metres).into();
+    let millimetres = |metres: f64| number::significant(1e3 * metres, 4).into();
     vec![
         clock_time(row.seconds).into(),
         number::time_factor(row.time_factor).into(),
@@ -237,8 +237,8 @@ mod tests {
             .iter()
             .map(|row| row.iter().map(Cell::show).collect())
             .collect();
-        assert_eq!(shown[0], ["365 days", "0.08536", "45.7 %", "33.8", "33.46", "-1.00 %"]);
-        assert_eq!(shown[1], ["40 days", "0.08536", "–", "33.8", "–", "–"]);
+        assert_eq!(shown[0], ["365 days", "0.08536", "45.7 %", "33.80", "33.46", "-1.00 %"]);
+        assert_eq!(shown[1], ["40 days", "0.08536", "–", "33.80", "–", "–"]);
         let answer = answer("s", &[found]).expect("a run");
         let told = "`MPM` differs from Terzaghi's solution with compressible water by at most 1.00 %.";
         assert_eq!(answer.sentence().expect("a sentence"), told);
@@ -264,7 +264,7 @@ mod tests {
         assert_eq!(both.title, "Settlement of MPM implicit cells=16");
         let shown: Vec<Vec<String>> =
             both.rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
-        assert_eq!(shown[0], ["ν 0.3", "1 day", "0.1", "–", "33.8", "34.14", "1.00 %"]);
+        assert_eq!(shown[0], ["ν 0.3", "1 day", "0.1", "–", "33.80", "34.14", "1.00 %"]);
         assert_eq!([&*shown[1][2], &*shown[2][0]], ["0.2", "ν 0.4"]);
         assert_eq!(table(&[of_run("0.3", &[0.1])]).title, "Settlement of MPM implicit cells=16 (ν 0.3)");
     }

@@ -4,6 +4,7 @@ use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::largest;
 use crate::questions::finding::{Finding, Place, Question};
 use crate::record::{CriticalStep, Probe, Record};
+use crate::render::number;
 use crate::render::page::Block;
 use crate::render::table::{Cell, Mood, Table, columns};
 
@@ -50,7 +51,7 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
 /// One row per case: predicted and observed critical step, and what the runs beside the limit did.
 pub fn table(records: &[Record]) -> Table {
     let header = "case | > predicted [s] | > observed [s] | > difference | > over h/c | > slow growth from [s] | at 0.97 \
-                  | at 1.03";
+                  | > steps at 0.97 | at 1.03 | > steps at 1.03 | > growth a step | > predicted growth";
     let rows = records.iter().filter_map(row_of);
     Table::of("Critical time step, predicted and observed", columns(header), rows)
         .file("critical-steps")
@@ -73,28 +74,32 @@ fn row_of(record: &Record) -> Option<Vec<Cell>> {
         Cell::of(predicted, Cell::Error, no_limit),
         Cell::of(found.observed, Cell::Error, not_stable),
         match predicted.and(found.within()) {
-            Some(within) => Cell::Text(format!("within {:.2} %", 100.0 * within)),
+            Some(within) => Cell::Text(format!("≤ {}", number::percent(within))),
             None => Cell::of(predicted.and(found.deviation()), Cell::Percent, why),
         },
-        Cell::Number(found.predicted / found.wave_limit),
+        Cell::Measured(found.predicted / found.wave_limit),
         found.creeping_from.map_or(Cell::Text("–".to_owned()), Cell::Error),
     ];
-    row.extend(
-        found.probes.iter().map(|probe| Cell::Verdict(Mood::of(probe.is_as_predicted()), probe_words(probe))),
-    );
+    row.extend(found.probes.iter().flat_map(|probe| {
+        let mood = Mood::of(probe.is_as_predicted());
+        [Cell::Verdict(mood, end_of(probe).to_owned()), Cell::Count(probe.failure.as_ref().map_or(probe.steps, |one| one.step))]
+    }));
+    let growing = found.probes.iter().find_map(|probe| Some((probe, probe.failure.as_ref()?.growth?)));
+    let factor = |growth: Option<f64>, why: &str| Cell::of(growth, |growth| Cell::Text(format!("{growth:.4}")), why);
+    row.extend([
+        factor(growing.map(|(_, seen)| seen), "nothing grew"),
+        factor(growing.and_then(|(probe, _)| probe.predicted_growth), "not predicted"),
+    ]);
     Some(row)
 }
 
-fn probe_words(probe: &Probe) -> String {
-    let Some(failure) = &probe.failure else {
-        let end = if probe.reaches_end { " to the end" } else { "" };
-        return format!("runs {} steps{end}", probe.steps);
-    };
-    let growth = failure.growth.map_or(String::new(), |seen| {
-        let predicted = probe.predicted_growth.map(|predicted| format!(" ({predicted:.4} predicted)"));
-        format!(", grows by {seen:.4} a step{}", predicted.unwrap_or_default())
-    });
-    format!("{} at step {}{growth}", failure.kind.name(), failure.step)
+/// How a run beside the limit ended.
+fn end_of(probe: &Probe) -> &'static str {
+    match &probe.failure {
+        Some(failure) => failure.kind.name(),
+        None if probe.reaches_end => "ran to the end",
+        None => "ran",
+    }
 }
 
 #[cfg(test)]
@@ -148,17 +153,8 @@ mod tests {
             predicted_growth: (steps == 9).then_some(1.0625),
         };
         let probes = [probe(7, None), probe(8, None), probe(9, Some(1.125)), probe(10, Some(1.25))];
-        let words = probes.each_ref().map(probe_words);
-        assert_eq!(
-            words,
-            [
-                "runs 7 steps to the end",
-                "runs 8 steps",
-                "unstable at step 9, grows by 1.1250 a step (1.0625 predicted)",
-                "unstable at step 10, grows by 1.2500 a step"
-            ]
-        );
-        let found = |observed: Option<f64>, unknown: Option<&str>| {
+        assert_eq!(probes.each_ref().map(end_of), ["ran to the end", "ran", "unstable", "unstable"]);
+        let with = |observed: Option<f64>, unknown: Option<&str>, places: [usize; 2]| {
             let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
                         integrator = ['implicit']\ncells = [2]\n";
             let mut record = records_of(text).remove(0);
@@ -169,13 +165,19 @@ mod tests {
                 drag_limit: 1.0,
                 combined_limit: 1.0,
                 unknown: unknown.map(str::to_owned),
-                probes: probes[..2].to_vec(),
+                probes: places.map(|place| probes[place].clone()).to_vec(),
                 ..CriticalStep::default()
             });
             table(&[record]).rows.remove(0)
         };
+        let found = |observed: Option<f64>, unknown: Option<&str>| with(observed, unknown, [0, 1]);
+        let ends = |places: [usize; 2]| with(None, None, places)[6..].iter().map(Cell::show).collect::<Vec<_>>();
+        assert_eq!(ends([0, 2])[..4], ["✗ ran to the end", "7", "✓ unstable", "9"].map(str::to_owned));
+        assert_eq!(ends([0, 2])[4..], ["1.1250", "1.0625"]);
+        assert_eq!(ends([0, 3])[4..], ["1.2500", "–"]);
+        assert_eq!(ends([0, 1])[4..], ["–", "–"]);
         let shown: Vec<String> = found(Some(0.75), None).iter().map(Cell::show).collect();
-        assert_eq!(shown[1..6], ["5.00e-1", "7.50e-1", "50.0 %", "2", "–"]);
+        assert_eq!(shown[1..6], ["5.00e-1", "7.50e-1", "50.0 %", "2.00", "–"]);
         let none = Cell::missing("no step was stable");
         assert_eq!(found(None, None)[2..4], [none.clone(), none]);
         let unknown = found(Some(0.75), Some("a reason"));

@@ -57,7 +57,7 @@ fn row_of(judgement: &Judgement) -> Option<Vec<Cell>> {
         Cell::Count(found.values.len() as u64),
         digits(found.finest()),
         behaviour_name(found.finest_three.behaviour).into(),
-        Cell::of(found.order, Cell::Number, OSCILLATES),
+        Cell::of(found.order, Cell::Order, OSCILLATES),
         Cell::of(found.extrapolated, digits, OSCILLATES),
         Cell::Error(found.relative()),
     ])
@@ -124,7 +124,7 @@ mod tests {
         // 2 + h²: the index is 1.25 (φ₁ − φ₂)/(2² − 1), over the finest value.
         let (row, why) = told(&[(1.0, 3.0), (0.5, 2.25), (0.25, 2.0625)]);
         let share = crate::render::number::error(1.25 * 0.0625 / 2.0625);
-        let start = ["s", "3", "2.062500", "monotone", "2", "2.000000", share.as_str()];
+        let start = ["s", "3", "2.062500", "monotone", "2.00", "2.000000", share.as_str()];
         assert_eq!((row, why.as_str()), (start.map(str::to_owned).to_vec(), ""));
         // Three times the range of the values.
         let (row, why) = told(&[(1.0, 2.0), (0.5, 2.2), (0.25, 2.1)]);

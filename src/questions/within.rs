@@ -104,24 +104,31 @@ fn answer(study: &str, all: &[QuantityWithin]) -> Option<Finding> {
     Some(WITHIN.answer([study], &facts).with(Block::Table(table(all))))
 }
 
-/// A row per quantity and bound: the cheapest choice, or where none stays within, the one with the least error.
+/// A row per quantity and bound: the cheapest choice, or where none stays within, the one with the least error. Integrators stand
+/// in the title where all are the same, and numbers of points in a cell where the method has runs with others.
 fn table(all: &[QuantityWithin]) -> Table {
-    let mut rows = Vec::new();
-    let choices = all.iter().flat_map(|asked| asked.bounds.iter().filter_map(|bound| bound.choice.as_ref()));
-    let integrators = distinct(choices.chain(all.iter().map(|asked| &asked.best)).map(|one| one.integrator));
-    let shared = if let [only] = integrators[..] { Some(only) } else { None };
+    let mut shown: Vec<(&QuantityWithin, f64, &WithinFinding, bool)> = Vec::new();
     for asked in all {
         for (place, bound) in asked.bounds.iter().enumerate() {
             match &bound.choice {
-                Some(choice) => rows.push(row((asked, bound.bound), choice, true, shared)),
+                Some(choice) => shown.push((asked, bound.bound, choice, true)),
                 // What misses the larger bound misses the smaller one.
                 None if place == 0 || asked.bounds[0].choice.is_some() => {
-                    rows.push(row((asked, bound.bound), &asked.best, false, shared));
+                    shown.push((asked, bound.bound, &asked.best, false));
                 }
                 None => {}
             }
         }
     }
+    let integrators = distinct(shown.iter().map(|(_, _, choice, _)| choice.integrator));
+    let shared = if let [only] = integrators[..] { Some(only) } else { None };
+    let has_points = shown.iter().any(|(_, _, choice, _)| choice.has_other_points);
+    let rows: Vec<Vec<Cell>> = shown
+        .iter()
+        .map(|(asked, bound, choice, is_within)| {
+            row((asked, *bound), choice, *is_within, [shared.is_none(), has_points])
+        })
+        .collect();
     let has = |mark: &str| rows.iter().flatten().any(|cell: &Cell| cell.show().starts_with(mark));
     let notes = [
         has("✗")
@@ -132,37 +139,36 @@ fn table(all: &[QuantityWithin]) -> Table {
     let notes: Vec<String> = notes.into_iter().flatten().collect();
     let everywhere =
         if all[0].problems > 1 { format!(" in all {} problems", all[0].problems) } else { String::new() };
-    let header = "error of | > bound | method | > cells | > step | > largest | > at T_v";
+    let with_integrator = if shared.is_none() { " | integrator" } else { "" };
+    let with_points = if has_points { " | > points per cell" } else { "" };
+    let header = format!(
+        "error of | > bound | method{with_integrator} | > cells{with_points} | > step | > largest | > at T_v"
+    );
     let is_counted = all.iter().all(|asked| asked.best.cost > 0.0);
     let least = if is_counted { "Least counted work" } else { "Coarsest mesh" };
     let integrator = shared.filter(|name| !name.is_empty()).map_or(String::new(), |name| format!(", {name}"));
     let title = format!("{least} within a bound at every output{everywhere}{integrator}");
-    Table::of(title, columns(header), rows).notes(notes).file(WITHIN.id)
+    Table::of(title, columns(&header), rows).notes(notes).file(WITHIN.id)
 }
 
-/// The cells of a choice; an integrator that all choices share stands in the title.
+/// The cells of a choice.
 fn row(
     (asked, bound): (&QuantityWithin, f64),
     choice: &WithinFinding,
     is_within: bool,
-    shared: Option<&str>,
+    [has_integrator, has_points]: [bool; 2],
 ) -> Vec<Cell> {
+    let method = choice.method.clone();
     let integrator = match choice.integrator {
-        own if own.is_empty() || shared == Some(own) => String::new(),
-        integrator => format!(", {integrator}"),
+        "" => Cell::missing("another program's"),
+        integrator => integrator.into(),
     };
-    let points = if choice.has_other_points {
-        format!(", {} per cell", choice.points_per_cell)
-    } else {
-        String::new()
-    };
-    let method = format!("{}{integrator}{points}", choice.method);
     let step = match choice.largest_step {
         step if step <= 0.0 => Cell::missing("another program's"),
-        step if choice.is_longest_tried => format!("≥ {}", duration(step)).into(),
-        step => duration(step).into(),
+        step if choice.is_longest_tried => format!("≥ {}", step_words(step)).into(),
+        step => step_words(step).into(),
     };
-    vec![
+    let mut row = vec![
         words::quantity(asked.quantity).into(),
         Cell::Text(format!("{} %", number::number(100.0 * bound))),
         match (is_within, choice.is_confirmed) {
@@ -170,11 +176,21 @@ fn row(
             (true, false) => Cell::Verdict(Mood::Note, method),
             (true, true) => Cell::Code(method),
         },
-        Cell::Count(choice.cells as u64),
+    ];
+    row.extend(has_integrator.then_some(integrator));
+    row.push(Cell::Count(choice.cells as u64));
+    row.extend(has_points.then_some(Cell::Count(choice.points_per_cell as u64)));
+    row.extend([
         step,
         Cell::Percent(choice.error),
         Cell::Text(number::time_factor(choice.time_factor)),
-    ]
+    ]);
+    row
+}
+
+/// A step in the unit that suits it.
+fn step_words(seconds: f64) -> String {
+    if seconds < 1e-6 { number::seconds(seconds) } else { duration(seconds) }
 }
 
 /// Bounds for which the cheapest choice is looked for.
@@ -486,16 +502,21 @@ mod tests {
     }
 
     #[test]
-    fn a_row_names_the_points_in_a_cell_where_runs_of_its_method_have_others() {
-        for (points, told) in [("[2]", "MPM"), ("[2, 3]", "MPM, 2 per cell"), ("[3, 2]", "MPM, 2 per cell")] {
+    fn points_in_a_cell_and_integrators_have_a_column_where_runs_have_others() {
+        for (points, told) in [("[2]", &["MPM", "4"][..]), ("[2, 3]", &["MPM", "4", "2"]), ("[3, 2]", &["MPM", "4", "2"])] {
             let text = format!(
                 "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
                  integrator = ['implicit']\ncells = [4, 8]\npoints_per_cell = {points}\n"
             );
             let (study, mut records) = solved("s", &text);
             records.iter_mut().flat_map(|record| &mut record.errors).for_each(|row| row.value = 1e-4);
-            let row = table(&within(&study, &records)).rows.remove(0);
-            assert_eq!(row[2].show(), told, "{points}");
+            let mut all = within(&study, &records);
+            let shown = |table: Table| table.rows[0].iter().skip(2).map(Cell::show).collect::<Vec<_>>();
+            assert_eq!(shown(table(&all))[..told.len()], *told, "{points}");
+            all[0].bounds[1].choice.as_mut().expect("within").integrator = "explicit";
+            let two = table(&all);
+            assert_eq!(two.columns[3].header, "integrator");
+            assert_eq!(shown(two)[..2], ["MPM", "implicit"], "{points}");
         }
     }
 

@@ -11,6 +11,27 @@ pub fn error(value: f64) -> String {
     })
 }
 
+/// An error with a power of ten: `5.62e-3`, `5.19e1`.
+pub fn error_with_power(value: f64) -> String {
+    finite(value, |v| if v == 0.0 { "0".to_owned() } else { format!("{v:.2e}") })
+}
+
+/// A measured value with so many significant digits, its trailing zeros among them: `0.193`, `1.00`, `349`.
+pub fn significant(value: f64, digits: usize) -> String {
+    finite(value, |v| {
+        // The power of ten after rounding: 9.996 with three digits is 10.0.
+        let rounded = format!("{v:.*e}", digits.saturating_sub(1));
+        let power = rounded.split_once('e').and_then(|(_, power)| power.parse::<i32>().ok()).unwrap_or(0);
+        let places = power.unsigned_abs() as usize;
+        match power {
+            _ if v == 0.0 => "0".to_owned(),
+            0..6 => format!("{v:.*}", digits.saturating_sub(1 + places)),
+            -3..0 => format!("{v:.*}", digits.saturating_sub(1) + places),
+            _ => rounded,
+        }
+    })
+}
+
 /// Two errors with three digits, or with as many as show their difference.
 pub fn told_apart(values: [f64; 2]) -> [String; 2] {
     let [one, two] = values.map(error);
@@ -174,6 +195,16 @@ mod tests {
     #[test]
     fn errors_have_three_digits() {
         assert_eq!([5.62e-3, 1.0, 0.0, -2.5e-10].map(error), ["5.62e-3", "1.00", "0", "-2.50e-10"]);
+        assert_eq!([5.62e-3, 51.9, 0.0].map(error_with_power), ["5.62e-3", "5.19e1", "0"]);
+    }
+
+    #[test]
+    fn measured_values_keep_their_trailing_zeros() {
+        assert_eq!(
+            [1.0, 0.192_47, 9.996, 348.9, 12_345.6, 0.001_234, 1.2e-7, 0.0, -2.5].map(|v| significant(v, 3)),
+            ["1.00", "0.192", "10.0", "349", "12346", "0.00123", "1.20e-7", "0", "-2.50"]
+        );
+        assert_eq!([33.8, 33.462].map(|v| significant(v, 4)), ["33.80", "33.46"]);
     }
 
     #[test]

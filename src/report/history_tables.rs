@@ -1,12 +1,12 @@
 //! Results over time as tables: two states of studies, and golden values over commits.
 
 use crate::golden::compare::{Change, Difference};
-use crate::history::comparison::{Seconds, StudyComparison, Trend};
+use crate::history::comparison::{StudyComparison, Trend};
 use crate::history::timeline::{Step, Timeline};
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
 use crate::report::tables::golden_changes::summary;
-use oedometer_soil::wording::{count_of, short};
+use oedometer_soil::wording::count_of;
 use std::collections::{BTreeMap, BTreeSet};
 
 fn trend(trend: Trend) -> Cell {
@@ -15,13 +15,6 @@ fn trend(trend: Trend) -> Cell {
         Trend::Mixed | Trend::Regressed => Mood::Fail,
     };
     Cell::Verdict(mood, trend.name().to_owned())
-}
-
-/// A processor time with the shortest and longest runs, where there are several.
-fn time(seconds: Option<Seconds>) -> Cell {
-    let Some(Seconds { median, least, most }) = seconds else { return Cell::missing("not timed in both") };
-    let scatter = if least < most { format!(" ({}–{})", short(least), short(most)) } else { String::new() };
-    Cell::Text(format!("{}{scatter}", short(median)))
 }
 
 /// Studies that are the same with a row each; more are named in one line where others differ.
@@ -116,22 +109,22 @@ fn summary_table(found: &[&StudyComparison], names: [&str; 2]) -> Table {
     if found.iter().any(|one| one.seconds.is_some()) {
         table.columns.extend(columns("> processor time before [s] | > after [s]"));
         for (row, one) in table.rows.iter_mut().zip(found) {
-            row.extend([0, 1].map(|state| time(one.seconds.map(|seconds| seconds[state]))));
+            let median = |state: usize| one.seconds.map(|seconds| seconds[state].median);
+            row.extend([0, 1].map(|state| Cell::of(median(state), Cell::Measured, "not timed in both")));
         }
-        table =
-            table.note("Times are medians over runs, with the shortest and longest; they are never judged.");
+        table = table.note("Times are medians over runs; they are never judged.");
     }
     table
 }
 
-/// The cases that went and came; none where both states have the same.
+/// The cases that were removed and added; none where both states have the same.
 fn cases_table(found: &[&StudyComparison]) -> Option<Table> {
     let rows = found.iter().filter(|one| one.cases_apart.iter().any(|cases| !cases.is_empty()));
     let rows = rows.map(|one| {
-        let [went, came] = &one.cases_apart;
-        vec![Cell::Code(one.study.clone()), cases(went), cases(came)]
+        let [removed, added] = &one.cases_apart;
+        vec![Cell::Code(one.study.clone()), cases(removed), cases(added)]
     });
-    Table::of("cases that went and came", columns("study | went | came"), rows).unless_empty()
+    Table::of("cases removed and added", columns("study | removed | added"), rows).unless_empty()
 }
 
 /// The inputs that differ; none where none does.
@@ -164,7 +157,7 @@ fn orders_table(found: &[&StudyComparison]) -> Option<Table> {
     let rows = rows.map(|(one, change)| {
         let mut row = vec![Cell::Code(one.study.clone()), Cell::Code(change.series.clone())];
         for state in [&change.before, &change.after] {
-            row.extend([Cell::of(state.order, Cell::Number, "its class has none"), state.class.into()]);
+            row.extend([Cell::of(state.order, Cell::Order, "its class has none"), state.class.into()]);
         }
         row
     });
@@ -195,7 +188,7 @@ fn cases(all: &[String]) -> Cell {
     }
 }
 
-/// Where errors or work went at a commit: nothing is known of that where no value is left to compare.
+/// Whether errors or work rose or fell at a commit: nothing is known of that where no value is left to compare.
 fn trend_of(step: &Step, word: Trend) -> Cell {
     if step.shared == 0 { Cell::missing("no value in common with the previous file") } else { trend(word) }
 }
@@ -208,12 +201,12 @@ pub(crate) fn timeline_table(lines: &[Timeline]) -> Table {
                 Cell::Code(line.study.clone()),
                 Cell::Code(step.commit.short().to_owned()),
                 step.commit.date.as_str().into(),
-                cases(&step.went),
-                cases(&step.came),
+                cases(&step.removed),
+                cases(&step.added),
                 trend_of(step, step.accuracy),
                 trend_of(step, step.cost),
-                Cell::Number(step.error_index),
-                Cell::Number(step.work_index),
+                Cell::Measured(step.error_index),
+                Cell::Measured(step.work_index),
                 Cell::Count(step.moved as u64),
                 Cell::Count(step.unpaired as u64),
                 Cell::Error(step.largest_change),
@@ -225,8 +218,8 @@ pub(crate) fn timeline_table(lines: &[Timeline]) -> Table {
     Table::of(
         "golden values over time",
         columns(
-            "study | commit | date | cases that went | cases that came | accuracy | cost | > error index | > work index \
-             | > moved | > came or went | > largest relative change | reason | commit subject",
+            "study | commit | date | cases removed | cases added | accuracy | cost | > error index | > work index \
+             | > moved | > added or removed | > largest relative change | reason | commit subject",
         ),
         rows,
     )
@@ -243,18 +236,18 @@ pub(crate) fn timeline_summary(lines: &[Timeline]) -> Table {
         let all = |of: fn(&Step) -> &Vec<String>| {
             line.steps.iter().flat_map(of).map(String::as_str).collect::<BTreeSet<_>>()
         };
-        let (went, came) = (all(|step| &step.went), all(|step| &step.came));
+        let (removed, added) = (all(|step| &step.removed), all(|step| &step.added));
         let apart = |one: &BTreeSet<&str>, other: &BTreeSet<&str>| {
             cases(&one.difference(other).map(|case| (*case).to_owned()).collect::<Vec<_>>())
         };
         Some(vec![
             Cell::Code(line.study.clone()),
-            apart(&went, &came),
-            apart(&came, &went),
+            apart(&removed, &added),
+            apart(&added, &removed),
             Cell::Count(line.steps.len() as u64),
             Cell::Count(steps.count() as u64),
-            Cell::Number(last.error_index),
-            Cell::Number(last.work_index),
+            Cell::Measured(last.error_index),
+            Cell::Measured(last.work_index),
             moved.map_or(Cell::missing("nothing changed"), |step| Cell::Code(step.commit.short().to_owned())),
             moved.map_or(Cell::missing("nothing changed"), |step| step.reason.as_str().into()),
         ])
@@ -262,7 +255,7 @@ pub(crate) fn timeline_summary(lines: &[Timeline]) -> Table {
     Table::of(
         "golden values over time",
         columns(
-            "study | cases that went | cases that came | > commits | > with changes | > error index | > work index \
+            "study | cases removed | cases added | > commits | > with changes | > error index | > work index \
              | last with a change | its reason",
         ),
         rows,
@@ -276,7 +269,7 @@ mod tests {
     use crate::golden::GoldenFile;
     use crate::golden::inputs::InputChange;
     use crate::golden::measure::key;
-    use crate::history::comparison::{Behaviour, OrderChange};
+    use crate::history::comparison::{Behaviour, OrderChange, Seconds};
     use crate::history::repository::Commit;
     use crate::history::state::StudyState;
 
@@ -339,8 +332,8 @@ mod tests {
                 subject: format!("Subject {number}"),
             },
             reason: format!("reason {number}"),
-            went: Vec::new(),
-            came: (0..if number == 1 { 0 } else { unpaired }).map(|case| format!("case {case}")).collect(),
+            removed: Vec::new(),
+            added: (0..if number == 1 { 0 } else { unpaired }).map(|case| format!("case {case}")).collect(),
             values: 40,
             shared: 40,
             error_index: 0.5 * at,
@@ -385,9 +378,6 @@ mod tests {
     #[test]
     fn states_have_their_times_their_values_and_their_orders_side_by_side() {
         let seconds = |median: f64, least: f64, most: f64| Seconds { median, least, most };
-        assert_eq!(time(Some(seconds(2.0, 1.5, 3.0))), Cell::Text("2 (1.5–3)".to_owned()));
-        assert_eq!(time(Some(seconds(2.0, 2.0, 2.0))), Cell::Text("2".to_owned()));
-        assert_eq!(time(None), Cell::missing("not timed in both"));
         let moods =
             [Trend::Same, Trend::Improved, Trend::Mixed, Trend::Regressed].map(|one| trend(one).show());
         assert_eq!(moods, ["✓ same", "✓ improved", "✗ mixed", "✗ regressed"]);
@@ -412,7 +402,7 @@ mod tests {
             titles,
             [
                 "A → B",
-                "cases that went and came",
+                "cases removed and added",
                 "inputs that differ",
                 "what moved",
                 "orders and classes that changed"
@@ -422,7 +412,7 @@ mod tests {
         assert_eq!(
             told[0],
             [
-                "timed,regressed,same,2,1,0,0,0.25,2 (1–3),5 (4–6)",
+                "timed,regressed,same,2,1,0,0,0.25,2.0,5.0",
                 "gone,same,same,1,0,1,0,,,",
                 "other,same,same,2,0,0,0,,,"
             ]

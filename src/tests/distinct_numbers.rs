@@ -150,16 +150,16 @@ fn every_check_and_group_has_its_own_number() {
         let (start, last) = (record.start.expect("a start"), *record.balance.last().expect("an output"));
         let expected = [
             ("points at the start", Cell::Count(start.points as u64)),
-            ("volume at the start, relative error", Cell::Error(start.volume_error)),
-            ("undrained pressure at the start, relative error", Cell::Error(start.undrained_pressure_error)),
-            ("unbalanced force at the start, over the load", Cell::Error(start.unbalanced_force)),
-            ("mass of solids, drift", Cell::Error(last.solid_mass_drift)),
-            ("water-mass error / expelled water", Cell::Error(last.water_imbalance)),
-            ("sum of internal forces, relative", Cell::Error(last.internal_force_imbalance)),
-            ("final settlement against settlement curve", Cell::Error(last.settlement_curve_gap)),
-            ("storage n E_oed/K_w", Cell::Error(record.groups.storage)),
-            ("finite strain m_vl q", Cell::Error(record.groups.finite_strain)),
-            ("inertia c_v/(H V)", Cell::Error(record.groups.inertia)),
+            ("volume at the start, relative error", Cell::Measured(start.volume_error)),
+            ("undrained pressure at the start, relative error", Cell::Measured(start.undrained_pressure_error)),
+            ("unbalanced force at the start, over the load", Cell::Measured(start.unbalanced_force)),
+            ("mass of solids, drift", Cell::Measured(last.solid_mass_drift)),
+            ("water-mass error / expelled water", Cell::Measured(last.water_imbalance)),
+            ("sum of internal forces, relative", Cell::Measured(last.internal_force_imbalance)),
+            ("final settlement against settlement curve", Cell::Measured(last.settlement_curve_gap)),
+            ("storage n E_oed/K_w", Cell::Measured(record.groups.storage)),
+            ("finite strain m_vl q", Cell::Measured(record.groups.finite_strain)),
+            ("inertia c_v/(H V)", Cell::Measured(record.groups.inertia)),
         ];
         for (name, value) in expected {
             let row = table.rows.iter().find(|row| text(&row[0]) == name);
@@ -184,7 +184,7 @@ fn critical_steps_spreads_and_phases_stand_under_their_names() {
     for (header, value) in [
         ("predicted", Cell::Error(0.011)),
         ("observed", Cell::Error(0.013)),
-        ("over h/c", Cell::Number(0.011 / 0.017)),
+        ("over h/c", Cell::Measured(0.011 / 0.017)),
         ("slow growth from", Cell::Error(0.007)),
     ] {
         assert_eq!(*under(&table, 0, header), value, "{header}");

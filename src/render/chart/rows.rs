@@ -27,7 +27,7 @@ pub struct ChartRows {
 pub struct ChartRow {
     /// Its name.
     pub name: String,
-    /// Rows of one family stand together.
+    /// The letter of its family, whose rows stand together.
     pub family: String,
     /// Per series why it has no point, in a word.
     pub without: Vec<String>,
@@ -73,7 +73,8 @@ impl Places {
             longest(&mut words.chain([head.as_str()]), FONT) + 10.0
         };
         let columns: Vec<f64> = rows.heads.iter().enumerate().map(column).collect();
-        let left = PAD + names + 14.0;
+        let families = longest(&mut rows.rows.iter().map(|row| row.family.as_str()), STRONG);
+        let left = PAD + families + 6.0 + names + 14.0;
         let at_right = chart.size.width - PAD - columns.iter().sum::<f64>();
         let first = at_right - 8.0 - gutter * chart.series.len() as f64;
         let places = columns.iter().scan(at_right, |at, width| {
@@ -131,6 +132,9 @@ pub(super) fn elements(chart: &Chart, rows: &ChartRows, is_narrow: bool) -> Resu
             if starts {
                 let at = top - if place == 0 { 0.0 } else { BETWEEN_FAMILIES / 2.0 };
                 line(area, &[(PAD, at), (places.width - PAD, at)], stroke(FRAME.light, 0.7))?;
+                if !is_narrow {
+                    write(area, &row.family, (PAD, top + ROW / 2.0), STRONG, HPos::Left)?;
+                }
             }
             if is_narrow {
                 narrow_row(area, (chart, rows), (place, row), (&places, &looks), top)
@@ -237,7 +241,8 @@ fn narrow_row(
     top: f64,
 ) -> Drawn {
     let line_at = |number: f64| top + 4.0 + 17.0 * (number + 0.5);
-    write(area, &row.name, (PAD, line_at(0.0)), STRONG, HPos::Left)?;
+    let name = format!("{} {}", row.family, row.name);
+    write(area, name.trim_start(), (PAD, line_at(0.0)), STRONG, HPos::Left)?;
     line(area, &[(places.scale.0, line_at(1.0)), (places.scale.1, line_at(1.0))], stroke(GRID.light, 0.8))?;
     markers(area, chart, (place, looks), places, line_at(1.0))?;
     // A number has the head of its column behind it.
@@ -318,8 +323,8 @@ mod tests {
             without: "does not arrive".to_owned(),
             heads: vec!["cheapest".to_owned(), "cells".to_owned()],
             rows: vec![
-                row("a", "first", ["", ""], &["MPM", "8"]),
-                row("b", "second", ["locks", ""], &["none"]),
+                row("a", "F", ["", ""], &["MPM", "8"]),
+                row("b", "G", ["locks", ""], &["none"]),
             ],
         });
         chart
@@ -330,10 +335,11 @@ mod tests {
         let (wide, narrow) =
             (chart().svg().expect("a figure"), chart().narrow_svg().expect("drawn").expect("narrow"));
         for svg in [&wide, &narrow] {
-            for words in [">MPM, 2 of 2</text>", ">locks</text>", ">b</text>", ">none</text>", "× 50"] {
+            for words in [">MPM, 2 of 2</text>", ">locks</text>", ">none</text>", "× 50"] {
                 assert!(svg.contains(words), "{words}: {svg}");
             }
         }
+        assert!(wide.contains(">b</text>") && wide.contains(">G</text>") && narrow.contains(">G b</text>"));
         assert!(wide.contains(">MPM</text>") && narrow.contains(">MPM · 8 cells</text>"), "{narrow}");
         assert!(narrow.contains(&format!("width=\"{NARROW}\"")), "{narrow}");
         // Two equal points stand above each other; a lone one lies on its line.

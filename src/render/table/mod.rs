@@ -97,10 +97,14 @@ pub enum Cell {
     Count(u64),
     /// A share, shown as a percentage.
     Percent(f64),
+    /// A share that someone set, as a percentage without more digits than it has: `0.1 %`.
+    Bound(f64),
     /// A time.
     Seconds(f64),
-    /// Any other quantity.
+    /// A quantity as it is given: `0.25`.
     Number(f64),
+    /// A quantity that was measured, or a ratio of such, in the form of its own size: `1.00`, `2.40e-13`.
+    Measured(f64),
     /// A judgement.
     Verdict(Mood, String),
     /// A link.
@@ -228,9 +232,13 @@ impl Cell {
     /// The number that a cell is sorted by, if it has one.
     pub(crate) fn value(&self) -> Option<f64> {
         match self {
-            Self::Error(v) | Self::Order(v) | Self::Percent(v) | Self::Seconds(v) | Self::Number(v) => {
-                Some(*v)
-            }
+            Self::Error(v)
+            | Self::Order(v)
+            | Self::Percent(v)
+            | Self::Bound(v)
+            | Self::Seconds(v)
+            | Self::Number(v)
+            | Self::Measured(v) => Some(*v),
             Self::Count(n) => Some(*n as f64),
             Self::Shaded { value, .. } => *value,
             _ => None,
@@ -248,8 +256,10 @@ impl Cell {
             Self::Order(v) => number::order(*v),
             Self::Count(n) => number::count(*n),
             Self::Percent(v) => number::percent(*v),
+            Self::Bound(v) => format!("{} %", number::number(100.0 * v)),
             Self::Seconds(v) => number::seconds(*v),
             Self::Number(v) => number::number(*v),
+            Self::Measured(v) => number::significant(*v, 3),
             Self::Verdict(mood, text) => format!("{} {text}", mood.mark()),
             Self::Missing(_) => "–".to_owned(),
         }
@@ -316,6 +326,13 @@ impl Table {
         self.rows.iter().flatten().any(|cell| matches!(cell, Cell::Shaded { .. }))
     }
 
+    /// Per column whether all of its errors have a power of ten, as one of them needs it.
+    pub(crate) fn powers(&self) -> Vec<bool> {
+        let needs = |cell: &Cell| matches!(cell, Cell::Error(value) if number::error(*value).contains('e'));
+        let rows = self.shown_rows();
+        (0..self.columns.len()).map(|place| rows.iter().filter_map(|row| row.get(place)).any(needs)).collect()
+    }
+
     /// Refuses a row with too few or too many cells.
     pub(crate) fn check(&self) -> Result<(), RenderError> {
         let expected = self.columns.len();
@@ -362,13 +379,17 @@ fn mark(i: usize) -> String {
     }
 }
 
-/// A cell as text with the mark of its footnote, if it has one.
-pub(crate) fn marked(cell: &Cell, footnotes: &[&str]) -> (String, Option<String>) {
+/// A cell as text, an error with a power of ten if its column has them, and the mark of its footnote, if it has one.
+pub(crate) fn marked(cell: &Cell, footnotes: &[&str], has_power: bool) -> (String, Option<String>) {
     let place = match cell {
         Cell::Missing(reason) => footnotes.iter().position(|f| f == reason),
         _ => None,
     };
-    (cell.show(), place.map(mark))
+    let text = match cell {
+        Cell::Error(value) if has_power => number::error_with_power(*value),
+        cell => cell.show(),
+    };
+    (text, place.map(mark))
 }
 
 #[cfg(test)]

@@ -18,14 +18,14 @@ impl Table {
     /// If a row has too few or too many cells.
     pub fn to_text(&self, width: usize) -> Result<String, RenderError> {
         self.check()?;
-        let footnotes = self.footnotes();
-        let cell = |cell: &Cell| match marked(cell, &footnotes) {
+        let (footnotes, powers) = (self.footnotes(), self.powers());
+        let cell = |(cell, has_power): (&Cell, &bool)| match marked(cell, &footnotes, *has_power) {
             (text, Some(mark)) => format!("{} [{mark}]", one_line(&text)),
             (text, None) => one_line(&text),
         };
         let heads: Vec<String> = self.columns.iter().map(|column| one_line(&column.heading())).collect();
         let rows: Vec<Vec<String>> =
-            self.shown_rows().iter().map(|row| row.iter().map(cell).collect()).collect();
+            self.shown_rows().iter().map(|row| row.iter().zip(&powers).map(cell).collect()).collect();
         let mut out =
             if self.title.is_empty() { String::new() } else { wrapped(&self.title, "", "  ", width) };
         let grid = grid(&self.columns, &heads, &rows, self.file.is_some());
@@ -52,7 +52,7 @@ impl Table {
     /// If a row has too few or too many cells.
     pub fn to_markdown(&self) -> Result<String, RenderError> {
         self.check()?;
-        let footnotes = self.footnotes();
+        let (footnotes, powers) = (self.footnotes(), self.powers());
         let mut out = String::new();
         if !self.title.is_empty() {
             let _ = write!(out, "**{}**\n\n", markdown(&self.title));
@@ -64,7 +64,8 @@ impl Table {
         let rule = |align| if align == Align::Left { ":---" } else { "---:" };
         row(self.columns.iter().map(|column| rule(column.align).to_owned()).collect());
         for cells in self.shown_rows() {
-            row(cells.iter().map(|cell| in_markdown(cell, &footnotes)).collect());
+            let cell = |(cell, has_power): (&Cell, &bool)| in_markdown(cell, &footnotes, *has_power);
+            row(cells.iter().zip(&powers).map(cell).collect());
         }
         for (mark, note) in self.lines_below() {
             let mark = mark.map(|mark| format!("<sup>{mark}</sup> ")).unwrap_or_default();
@@ -79,7 +80,7 @@ impl Table {
     /// If a row has too few or too many cells.
     pub fn to_html(&self) -> Result<String, RenderError> {
         self.check()?;
-        let footnotes = self.footnotes();
+        let (footnotes, powers) = (self.footnotes(), self.powers());
         let class = |align| if align == Align::Left { "l" } else { "r" };
         let dense = if self.is_dense() { " dense" } else { "" };
         let mut out = format!("<div class=\"table{dense}\">\n<table>\n");
@@ -101,7 +102,7 @@ impl Table {
         out.push_str("</tr>\n</thead>\n<tbody>\n");
         for row in self.shown_rows() {
             out.push_str("<tr>");
-            for (cell, column) in row.iter().zip(&self.columns) {
+            for ((cell, column), has_power) in row.iter().zip(&self.columns).zip(&powers) {
                 let value = cell.value().map_or(String::new(), |value| format!(" data-v=\"{value:.5e}\""));
                 let is_long = matches!(cell, Cell::Text(text) if text.chars().count() > LONG);
                 let more = match cell {
@@ -109,7 +110,8 @@ impl Table {
                     _ => if is_long { " long" } else { "" }.to_owned(),
                 };
                 let class = format!("{}{more}", class(column.align));
-                let _ = write!(out, "<td class=\"{class}\"{value}>{}</td>", in_html(cell, &footnotes));
+                let words = in_html(cell, &footnotes, *has_power);
+                let _ = write!(out, "<td class=\"{class}\"{value}>{words}</td>");
             }
             out.push_str("</tr>\n");
         }
@@ -199,11 +201,11 @@ fn in_json(cell: &Cell) -> Value {
     }
 }
 
-fn in_markdown(cell: &Cell, footnotes: &[&str]) -> String {
+fn in_markdown(cell: &Cell, footnotes: &[&str], has_power: bool) -> String {
     let link = |words: &str, target: &str| {
         format!("[{}]({})", markdown(words), markdown_target(target).replace('|', "%7C"))
     };
-    match (cell, marked(cell, footnotes)) {
+    match (cell, marked(cell, footnotes, has_power)) {
         (Cell::Code(name), _) => {
             // The bars of a table are escaped even within back quotes.
             let name = one_line(name).replace('|', "\\|");
@@ -218,8 +220,8 @@ fn in_markdown(cell: &Cell, footnotes: &[&str]) -> String {
     }
 }
 
-fn in_html(cell: &Cell, footnotes: &[&str]) -> String {
-    match (cell, marked(cell, footnotes)) {
+fn in_html(cell: &Cell, footnotes: &[&str], has_power: bool) -> String {
+    match (cell, marked(cell, footnotes, has_power)) {
         (Cell::Code(name), _) => html_code(name),
         (Cell::Text(text), _) => html_with_code(text),
         (Cell::Link { words, target }, _) => {

@@ -61,11 +61,13 @@ pub(crate) fn front_links(sections: &[Section], studies: usize) -> Vec<(String, 
 /// the groups.
 pub(crate) fn section(race: &RaceFindings, answers: &Answers<'_>) -> Result<Section, RenderError> {
     let facts = facts(race);
-    let trust = [Block::Heading("Why believe it?".to_owned()), Block::List(trust(race, answers))];
     let views = ReadOut::BOTH.map(|read_out| {
         let main = vec![Block::Figure(dot_plot(race, read_out))];
-        let aside = [vec![Block::Table(family_table(&facts, read_out))], trust.to_vec()].concat();
-        (format!("Read {}", places_of(read_out)), vec![Block::Beside(main, aside)])
+        let mut aside = vec![Block::Table(family_table(&facts, read_out))];
+        if read_out == ReadOut::Points {
+            aside.extend([Block::Heading("Why believe it?".to_owned()), Block::List(trust(race, answers))]);
+        }
+        (capitalised(places_of(read_out)), vec![Block::Beside(main, aside)])
     });
     let choice = answers.to("choice").map(Finding::sentence).transpose()?.unwrap_or_default();
     let more = format!("[Every method in every problem]({PAGE}) · [profile.csv](tables/profile.csv)");
@@ -73,7 +75,7 @@ pub(crate) fn section(race: &RaceFindings, answers: &Answers<'_>) -> Result<Sect
     Ok(Section::new("Which method should I use?", "choice", blocks))
 }
 
-/// What speaks for the race, and where its choice turns.
+/// What speaks for the benchmark, and where its choice changes.
 fn trust(race: &RaceFindings, answers: &Answers<'_>) -> Vec<String> {
     let checks = || answers.studies.iter().map(|one| &one.check);
     let mut points = vec![format!(
@@ -118,7 +120,7 @@ fn answer_table(findings: &RaceFindings) -> Table {
             Cell::Percent(one.share),
             interval.into(),
             Cell::Percent(one.within_two),
-            format!("× {}", number::short(one.dearest)).into(),
+            Cell::Measured(one.dearest),
             Cell::Count(one.alike.len() as u64),
             holds(one.holds.time),
             holds(one.holds.budget),
@@ -126,21 +128,22 @@ fn answer_table(findings: &RaceFindings) -> Table {
             holds(one.holds.read_out),
         ]
     });
-    let heads = "group | read | method | > reaches 1 % | > share | > interval | > within twice the cheapest | > most work, of any group | > methods not told apart | \
-                 each output | half, twice the budget | 0.5, 2, 5 % | read the other way";
+    let heads = "group | fields | method | > reaches 1 % in | > share | > interval | > within twice the cheapest | \
+                 > most work over the cheapest | > equivalent methods | each output | half, twice the budget | \
+                 0.5, 2, 5 % | other sampling";
     Table::of("The methods to use, and where that holds", columns(heads), rows).note(
         "share: families of problems have equal weight; the method with the largest sum of both shares, and \
-         those within 0.03 of it; interval: nine tenths of the shares when problems are resampled; not told \
-         apart: intervals of both shares overlap",
+         those within 0.03 of it; interval: nine tenths of the shares when problems are resampled; \
+         equivalent: intervals of both shares overlap",
     )
 }
 
-/// What each operator changes.
+/// How many more problems each operator makes a method reach.
 fn operator_table(findings: &RaceFindings) -> Table {
     let rows = findings.operators.iter().map(|one| {
         let mut row = vec![Cell::Text(one.operator.clone()), Cell::Code(one.methods[1].clone())];
         row.extend(one.arrivals.iter().map(|counts| match counts {
-            Some([without, with]) => format!("{without} → {with}").into(),
+            Some([without, with]) => Cell::Number(*with as f64 - *without as f64),
             None => Cell::missing("not among the methods"),
         }));
         row
@@ -149,7 +152,8 @@ fn operator_table(findings: &RaceFindings) -> Table {
     heads.extend(races().map(|(group, read_out)| {
         TableColumn::number(format!("{}, {}", words_of(group), places_of(read_out)))
     }));
-    Table::of("Problems in which 1 % is reached without and with each operator", heads, rows)
+    Table::of("Problems gained by each operator", heads, rows)
+        .note("problems in which 1 % is reached with it, less those without it")
 }
 
 /// Outputs, meshes and budgets.
@@ -171,10 +175,10 @@ fn budget_table(findings: &RaceFindings) -> Table {
 /// Performance profiles of a group and read-out: staircases, those of the answers and of known methods in colour.
 fn profile_figure(findings: &RaceFindings, group: Group, read_out: ReadOut) -> Figure {
     let best = findings.best(group, read_out).map_or("", |one| &one.method);
-    let whole = findings.best(group, read_out).map_or("No method arrives".to_owned(), |one| {
+    let whole = findings.best(group, read_out).map_or("No method reaches 1 %".to_owned(), |one| {
         format!("{} reaches 1 % in {} of {}", one.method, one.reached, one.of)
     });
-    let title = format!("{whole}: {}, read {}", words_of(group), places_of(read_out));
+    let title = format!("{whole}: {}, {}", words_of(group), places_of(read_out));
     let mut chart = Chart::new(
         title,
         ChartAxis::log10("work to 1 %, over that of the cheapest method").between(1.0, LARGEST_TAU),
@@ -209,10 +213,10 @@ fn profile_figure(findings: &RaceFindings, group: Group, read_out: ReadOut) -> F
 /// The page of every method: first what a practitioner asks, then answers, budgets, profiles, the whole matrix and properties.
 pub fn matrix_page(findings: &RaceFindings) -> Page {
     let by_read_out = |blocks: &dyn Fn(ReadOut) -> Vec<Block>| {
-        Block::Switch(ReadOut::BOTH.map(|one| (format!("Read {}", places_of(one)), blocks(one))).to_vec())
+        Block::Switch(ReadOut::BOTH.map(|one| (capitalised(places_of(one)), blocks(one))).to_vec())
     };
     let profiles = races().map(|(group, read_out)| {
-        let words = format!("{}, read {}", capitalised(words_of(group)), places_of(read_out));
+        let words = format!("{}, {}", capitalised(words_of(group)), places_of(read_out));
         (words, vec![Block::Figure(profile_figure(findings, group, read_out))])
     });
     let mut sections = vec![
@@ -336,7 +340,7 @@ fn property_table(findings: &RaceFindings) -> Table {
         let velocity = of_method().find_map(|entry| entry.spurious_velocity);
         vec![
             Cell::Code(method.name.to_owned()),
-            Cell::of(step, Cell::Number, "not observed"),
+            Cell::of(step, Cell::Measured, "not observed"),
             Cell::of(velocity, Cell::Error, "not run"),
             Cell::of(asymmetry.map(|one| one[0]), Cell::Error, "not measured"),
             Cell::of(asymmetry.map(|one| one[1]), Cell::Error, "not measured"),

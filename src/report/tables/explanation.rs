@@ -47,8 +47,8 @@ fn carriers_table(record: &Record, explanation: &Explanation) -> Table {
             Some(place) => [
                 Cell::Number(place.zeta),
                 Cell::Percent(place.share),
-                Cell::Error(place.computed),
-                Cell::Error(place.exact),
+                Cell::Measured(place.computed),
+                Cell::Measured(place.exact),
             ],
             None => std::array::from_fn(|_| Cell::missing("")),
         });
@@ -123,8 +123,8 @@ mod tests {
             ("Linf", Cell::Error(0.03)),
             ("worst at ζ", Cell::Number(0.3)),
             ("share of squared error", Cell::Percent(0.4)),
-            ("computed", Cell::Error(5.0)),
-            ("exact", Cell::Error(6.0)),
+            ("computed", Cell::Measured(5.0)),
+            ("exact", Cell::Measured(6.0)),
         ] {
             assert_eq!(under(header), format!("{cell:?}"), "{header}");
         }

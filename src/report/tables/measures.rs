@@ -99,13 +99,13 @@ pub fn checks_table(record: &Record) -> Table {
         add("points at the start", Cell::Count(start.points as u64), "".into());
     }
     for check in worst_of([record]) {
-        add(check.what, Cell::Error(check.value), bound_cell(&check));
+        add(check.what, Cell::Measured(check.value), bound_cell(&check));
     }
     for row in record.measures.iter().filter(|row| row.time_factor.is_none()) {
         add(&row.name, format!("{:.7}", row.found).into(), format!("exactly {:.7}", row.exact).into());
     }
     for (what, value) in groups_of(record) {
-        add(what, Cell::Error(value), "".into());
+        add(what, Cell::Measured(value), "".into());
     }
     Table::of("checks and groups", columns("what | > value | bound"), rows)
         .notes(soundness::complaints_of_run(record).into_iter().map(|one| format!("✗ {one}")))

@@ -81,7 +81,7 @@ fn place_cells(worst: Option<&WorstPlace>, is_plane: bool) -> Vec<Cell> {
     let mut cells = vec![Cell::of(worst.map(|worst| worst.zeta), Cell::Number, "")];
     cells.extend(is_plane.then(|| Cell::of(worst.and_then(|worst| worst.x), Cell::Number, "")));
     cells.extend(match worst {
-        Some(worst) => [Cell::Percent(worst.share), Cell::Error(worst.computed), Cell::Error(worst.exact)],
+        Some(worst) => [Cell::Percent(worst.share), Cell::Measured(worst.computed), Cell::Measured(worst.exact)],
         None => std::array::from_fn(|_| Cell::missing("")),
     });
     cells
@@ -162,8 +162,8 @@ mod tests {
             Cell::Number(0.75),
             Cell::Number(0.25),
             Cell::Percent(0.4),
-            Cell::Error(11.0),
-            Cell::Error(13.0),
+            Cell::Measured(11.0),
+            Cell::Measured(13.0),
         ];
         assert_eq!(table.rows, [expected.to_vec()]);
     }

@@ -115,7 +115,7 @@ fn golden_values_in_a_subfolder_are_found_from_the_root() {
         let told = call(at, words);
         assert!(told.code == 0 && told.out.contains("\nt "), "{words:?}: {}{}", told.out, told.err);
     }
-    // Another method: which cases went and came is told first, and no trend of what cannot be compared.
+    // Another method: which cases were removed and added is told first, and no trend of what cannot be compared.
     accepted(&at.join("cn"), "s", &STUDY.replace("MPM", "GIMP"));
     git(&["commit", "-qam", "exchange the method"]);
     let told = call(at, &["history", "s", "--format", "csv"]);
@@ -128,7 +128,7 @@ fn golden_values_in_a_subfolder_are_found_from_the_root() {
     let told = call(at, &["history", "--golden", "cn/golden"]);
     assert!(told.out.contains("GIMP implicit cells=3") && !told.out.contains("nothing"), "{}", told.out);
     let told = call(at, &["compare", "HEAD~1", "HEAD", "s"]);
-    assert!(told.out.contains("cases that went and came"), "{}{}", told.out, told.err);
+    assert!(told.out.contains("cases removed and added"), "{}{}", told.out, told.err);
 }
 
 #[test]

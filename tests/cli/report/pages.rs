@@ -132,7 +132,7 @@ fn the_race_has_a_cell_for_every_contender_in_every_situation_and_says_why_one_c
     let choice = page.sections.first().filter(|section| section.id == "choice").expect("answered first");
     let Some(Block::Switch(views)) = choice.blocks.first() else { panic!("{choice:?}") };
     let words: Vec<&str> = views.iter().map(|(word, _)| word.as_str()).collect();
-    assert_eq!(words, ["Read at the points", "Read as means of cells"]);
+    assert_eq!(words, ["Sampled at the points", "Averaged over cells"]);
     for (word, blocks) in views {
         let [Block::Beside(main, aside)] = blocks.as_slice() else { panic!("{word}: {blocks:?}") };
         let ([Block::Figure(figure)], [Block::Table(families), ..]) = (main.as_slice(), aside.as_slice())
