@@ -1,5 +1,5 @@
-//! The runs of a contender of the race: its meshes from coarse to fine until it has arrived for good, and shorter steps where
-//! an arrival rests on them or a run has failed.
+//! The runs of a method of the benchmark: its meshes from coarse to fine until it reaches the tolerance for good, and shorter steps where
+//! a result rests on them or a run has failed.
 
 use crate::case::Case;
 use crate::case::contender::CONTENDERS;
@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 /// Counted cost, s, that a mesh may take in one dimension and in the plane: several times what the cheapest method takes for 1 %
 /// in the dearest problem.
 pub const MOST_WORK: [f64; 2] = [0.3, 1.0];
-/// By how much an order may rise on finer meshes before a contender is given up.
+/// By how much an order may rise on finer meshes before a method is given up.
 const RISE: f64 = 1.0;
 
 /// The errors of a run that the race judges: one that fails a check has not ended well.
@@ -64,7 +64,7 @@ pub fn halvings(steps: &StepsOfMesh, case: &Case) -> usize {
     steps.get(&case.cells).map_or(0, |numbers| numbers.iter().filter(longer).count())
 }
 
-/// The runs of a contender so far.
+/// The runs of a method so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refinement {
     steps: StepsOfMesh,
@@ -108,7 +108,7 @@ impl Refinement {
         })
     }
 
-    /// Half the step is taken on the mesh that arrives within the budget and on the next, and where the finest mesh fails from
+    /// Half the step is taken on the mesh that reaches the tolerance within the budget and on the next, and where the finest mesh fails from
     /// small errors; a quarter where half of it does so too.
     fn wants_step(&self, halvings: usize, cells: usize, dimensions: usize) -> bool {
         let meshes: Vec<Mesh> = (self.runs.range(..(1, 0)).map(|(_, mesh)| *mesh))
@@ -132,7 +132,7 @@ impl Refinement {
     }
 
     /// Whether a mesh follows the last one and that before. Two failures in a row are enough, and so are two meshes within
-    /// the smallest tolerance, however it is read; who has not arrived goes on as long as the line is in reach.
+    /// the smallest tolerance, however it is read; a method that has not reached it goes on as long as it can.
     fn goes_on(&self, before: Option<Mesh>, last: Mesh) -> bool {
         let Some(before) = before else { return true };
         let is_wanted = |read_out: ReadOut| {
@@ -179,7 +179,7 @@ fn predicted_cost(before: Option<Mesh>, last: Mesh, cells: usize, dimensions: us
     last.cost * elementary::powf(finer, observed.map_or(usual, |power| power.clamp(1.0, usual + 1.0)))
 }
 
-/// Places of the cases of the race that run one after the other: those of each contender, from coarse to fine and then with
+/// Places of the cases of the race that run one after the other: those of each method, from coarse to fine and then with
 /// shorter steps.
 pub fn ladders(study: &Study, cases: &[&Case]) -> Vec<Vec<usize>> {
     let steps = steps_of(study);
@@ -250,7 +250,7 @@ mod tests {
             (&[][..], true),
             (&[at(4, 0.1), at(8, 0.004)], true),
             (&[at(8, 0.005), at(16, 0.004)], false),
-            // Read at the centres it has not arrived.
+            // Read at the centres it has not reached the tolerance.
             (&[(0, 8, [Some(0.005), Some(0.02)], free), (0, 16, [Some(0.004), Some(0.01)], free)], true),
             (&[at(8, 0.009), at(16, 0.008)], true),
             (&[fails(4), at(8, 0.1)], true),

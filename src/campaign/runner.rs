@@ -236,13 +236,13 @@ type Outcome = Result<Box<Record>, Box<RunError>>;
 enum Ending {
     /// It was not begun, or not ended, for the run was stopped.
     Left,
-    /// A coarser mesh of its ladder had arrived.
+    /// A coarser mesh of its ladder had reached the tolerance.
     Spared,
     /// With a record, or without one.
     Ended(Outcome),
 }
 
-/// Cases that run one after the other: one alone, or the meshes of a contender of the race until it arrives.
+/// Cases that run one after the other: one alone, or the meshes of a method of the benchmark until it reaches the tolerance.
 struct Ladder<'a> {
     jobs: Vec<Job<'a>>,
     /// What is known of its meshes before the run; none of a case alone.

@@ -20,7 +20,7 @@ pub struct TakenOver {
 }
 
 impl TakenOver {
-    /// A record that is taken over; `None` for one of this program, whose sources decide its values.
+    /// A record that is reused; `None` for one of this program, whose sources decide its values.
     pub fn of(record: &Record, is_proven: bool) -> Option<Self> {
         let about = record.outside_run()?;
         Some(Self {

@@ -7,7 +7,7 @@ use crate::study::check::Study;
 
 /// Drops from a record what no verdict of its study needs, because whole records of a hundred thousand cases do not
 /// fit into memory: fields and history, and where no expectation selects the record its errors and balances too.
-/// Records with complaints stay whole, and those that cannot be made again.
+/// Records with warnings stay whole, and those that cannot be made again.
 pub fn thin(study: &Study, record: &mut Record) {
     // What is proposed to a study without expectations comes from its errors and fields.
     if proposals::are_wanted(study) {

@@ -59,7 +59,7 @@ pub fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) 
             elementary::powi((stress - pressure + applied - of_weight) / load, 2)
         })
         .sum();
-    // What the load presses out in the end: of what leaves up to now nothing may be left, as at the start
+    // What the load expels in the end: of what leaves up to now nothing may be left, as at the start
     // or under a cosine.
     let pressed_out = load / case.material.oedometric_modulus() * case.column.height;
     let surface = case.column.volume(case.cells) / case.column.height;

@@ -8,7 +8,7 @@ use oedometer_scenes::scene::{Body, Check, LoadKind, Question};
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::wording::{short, typed};
 
-/// The check whose complaint names numbers of points.
+/// The check whose warning names numbers of points.
 const POINTS_MISSING: &str = "points missing at the start";
 /// The check of the growth that the eigenvalues of the step promise.
 const GROWN_MODE: &str = "growth of a mode until the last output, from the eigenvalues of the step";
@@ -41,7 +41,7 @@ const SPLINES: &str = "points do not integrate splines exactly, and the error do
 const CURVE_GAP: f64 = 2e-3;
 /// Velocity over the hydraulic conductivity that round-off causes in a column at rest; about 1e-12 is observed.
 const AT_REST: f64 = 1e-9;
-/// Water imbalance over what the load presses out, on a lattice at rest: ten times that of the methods on
+/// Water imbalance over what the load expels, on a lattice at rest: ten times that of the methods on
 /// ten cells (3e-6 for a patch at `T_v = 0.05`, 3e-5 within the first steps of an explicit run).
 const WATER_AT_REST: f64 = 3e-4;
 /// [`WATER_AT_REST`] where points move or deform: twice the worst of the methods at half the height lost,
@@ -285,7 +285,7 @@ fn shift(record: &Record) -> f64 {
     points.offset.abs() + points.jitter.abs()
 }
 
-/// Share of the water that may be missing, over what the load presses out; or why the equations or the points do not
+/// Share of the water that may be missing, over what the load expels; or why the equations or the points do not
 /// conserve water.
 fn water_bound(record: &Record) -> Result<f64, &'static str> {
     let case = &record.case;

@@ -29,7 +29,7 @@ impl Holds {
     }
 }
 
-/// Where the method of an answer does not arrive, and why.
+/// Where the method of an answer does not reach the tolerance, and why.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Missed {
     /// The situation.
@@ -66,11 +66,11 @@ pub struct Answer {
     pub holds: Holds,
     /// Methods that these situations do not tell from it: the intervals of both shares overlap.
     pub alike: Vec<String>,
-    /// Where it does not arrive.
+    /// Where it does not reach the tolerance.
     pub missed: Vec<Missed>,
 }
 
-/// The answers of a group and read-out, the best first; none where nobody arrives.
+/// The answers of a group and read-out, the best first; none where no method reaches the tolerance.
 pub fn answers(situations: &[Situation], group: Group, read_out: ReadOut) -> Vec<Answer> {
     let usual = Terms::usual(read_out);
     let best = |terms: &Terms| -> Vec<String> {

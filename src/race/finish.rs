@@ -1,5 +1,5 @@
-//! The finishing line: where a contender brings its errors below a tolerance and keeps them there, what that costs, and why it
-//! does not arrive where it does not.
+//! The finishing line: where a method brings its errors below a tolerance and keeps them there, what that costs, and why it
+//! does not reach the tolerance where it does not.
 
 use crate::record::race_errors::{ARRIVED, ERRORS, LOOSEST, ROUGH, ReadOut, RunErrors, SMALLEST};
 use crate::record::reached::reached;
@@ -39,18 +39,18 @@ impl RaceQuantity {
     }
 }
 
-/// How much work a contender may spend.
+/// How much work a method may spend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Budget {
     /// The mesh before that of the budget.
     Half,
     /// The last mesh of a situation but one.
     Whole,
-    /// The last mesh, which also confirms arrivals on the one before.
+    /// The last mesh, which also confirms the one before.
     Twice,
 }
 
-/// What is asked of a contender.
+/// What is asked of a method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Terms {
     /// Where fields are read.
@@ -78,7 +78,7 @@ impl Terms {
     }
 }
 
-/// A contender on one mesh.
+/// A method on one mesh.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Level {
     /// Cells over the height.
@@ -107,7 +107,7 @@ impl Level {
     }
 }
 
-/// Where a contender arrives.
+/// Where a method reaches the tolerance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Arrival {
     /// Cells of the coarsest mesh from which on all stay within the tolerance, by half the step too where that ran.
@@ -122,7 +122,7 @@ pub struct Arrival {
     pub confirmed: bool,
 }
 
-/// Where some levels arrive on at most so many cells.
+/// Where some levels reach the tolerance on at most so many cells.
 pub fn arrival(levels: &[Level], terms: &Terms, most_cells: usize) -> Option<Arrival> {
     let is_within: Vec<bool> = levels.iter().map(|level| level.is_within(terms)).collect();
     let at = reached(&is_within).filter(|at| levels[at.place].cells <= most_cells)?;
@@ -149,7 +149,7 @@ pub fn arrival(levels: &[Level], terms: &Terms, most_cells: usize) -> Option<Arr
     })
 }
 
-/// Why a contender does not arrive: each measured on its finest mesh.
+/// Why a method does not reach the tolerance: each measured on its finest mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reason {
@@ -192,7 +192,7 @@ impl Reason {
     }
 }
 
-/// Why levels do not arrive; `stiffness` is what the finest settles over what the soil does.
+/// Why levels do not reach the tolerance; `stiffness` is what the finest settles over what the soil does.
 pub fn reason_of(levels: &[Level], terms: &Terms, stiffness: Option<f64>) -> Reason {
     let Some(finest) = levels.last() else { return Reason::NotRun };
     let Some(error) = finest.error(terms) else {
@@ -288,7 +288,7 @@ mod tests {
         assert_eq!(arrival(&undone, &TERMS, 16).map(|one| (one.cells, one.cost)), Some((16, 27.0)));
         undone.truncate(2);
         assert_eq!(reason_of(&undone, &TERMS, None), Reason::Unstable);
-        // Half the error of the others: the pressure arrives earlier. There is no stress.
+        // Half the error of the others: the pressure reaches the tolerance earlier. There is no stress.
         let of = |quantity| arrival(&levels(&falling), &Terms { quantity, tolerance: 0.05, ..TERMS }, 16);
         assert_eq!(of(RaceQuantity::Pressure).map(|one| one.seconds), Some(Some(2.0)));
         assert_eq!(of(RaceQuantity::Stress), None);

@@ -1,4 +1,4 @@
-//! The race to one per cent: every contender refines its mesh in every situation until it arrives. What the records come
+//! The race to one per cent: every method refines its mesh in every situation until it reaches the tolerance. What the records come
 //! to, as numbers and names; pages make sentences of it.
 
 pub mod answer;
@@ -32,7 +32,7 @@ pub struct GroupProfiles {
     pub profiles: Vec<Profile>,
 }
 
-/// What an operator does to the number of situations that arrive.
+/// What an operator does to the number of situations that reach the tolerance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Operator {
     /// Its word.
@@ -40,7 +40,8 @@ pub struct Operator {
     pub operator: String,
     /// The methods without and with it.
     pub methods: [String; 2],
-    /// Per group and read-out the situations that arrive without and with it; none where no method of the pair is of the group.
+    /// Per group and read-out the situations that reach the tolerance without and with it; none where no method of the pair is of
+    /// the group.
     pub arrivals: Vec<Option<[usize; 2]>>,
 }
 
@@ -62,7 +63,7 @@ pub struct RaceFindings {
     pub profiles: Vec<GroupProfiles>,
     /// What each operator changes.
     pub operators: Vec<Operator>,
-    /// Every situation with every contender.
+    /// Every situation with every method.
     pub situations: Vec<Situation>,
     /// What is no error: critical step, rest and power.
     pub properties: Vec<Situation>,
@@ -104,7 +105,7 @@ impl RaceFindings {
         self.profiles.iter().find(is_it).map_or(&[], |one| &one.profiles)
     }
 
-    /// The best method of a group and read-out, where one arrives.
+    /// The best method of a group and read-out, where one reaches the tolerance.
     pub fn best(&self, group: Group, read_out: ReadOut) -> Option<&Answer> {
         self.answers.iter().find(|answer| (answer.group, answer.read_out) == (group, read_out))
     }

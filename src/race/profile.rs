@@ -18,7 +18,7 @@ const OUTSIDE: usize = RESAMPLES / 20;
 pub struct CostRow {
     /// Its family.
     pub family: String,
-    /// Per method; `None` where it does not arrive.
+    /// Per method; `None` where it does not reach the tolerance.
     pub costs: Vec<Option<f64>>,
 }
 
@@ -36,7 +36,7 @@ pub struct CostTable {
 pub struct Profile {
     /// The method.
     pub method: String,
-    /// Multiples of the least cost with the share of situations in which it arrives within each, rising.
+    /// Multiples of the least cost with the share of situations in which it reaches the tolerance within each, rising.
     pub steps: Vec<(f64, f64)>,
 }
 
@@ -45,18 +45,18 @@ pub struct Profile {
 pub struct Shares {
     /// The method.
     pub method: String,
-    /// Situations in which it arrives.
+    /// Situations in which it reaches the tolerance.
     pub count: usize,
     /// Their share, families weighing the same.
     pub reached: f64,
-    /// Share in which it arrives within twice the least cost.
+    /// Share in which it reaches the tolerance within twice the least cost.
     pub within_two: f64,
     /// Nine tenths of the resampled shares of both kinds lie between these.
     pub intervals: [[f64; 2]; 2],
 }
 
 impl Shares {
-    /// The criterion: whoever always arrives late is no better than who sometimes does not arrive.
+    /// The criterion: a method that always reaches it at great cost is no better than one that sometimes does not.
     pub fn sum(&self) -> f64 {
         self.reached + self.within_two
     }
@@ -76,7 +76,7 @@ impl CostTable {
         rows.iter().map(|row| 1.0 / (families.len() as f64 * alike(row))).collect()
     }
 
-    /// Share of rows in which a method arrives within a multiple of the least cost; from a positive zero, for the sum of
+    /// Share of rows in which a method reaches the tolerance within a multiple of the least cost; from a positive zero, for the sum of
     /// nothing would be a negative one.
     fn share(rows: &[&CostRow], weights: &[f64], method: usize, tau: f64) -> f64 {
         let is_in = |row: &CostRow| row.ratio(method).is_some_and(|ratio| ratio <= tau);
@@ -99,7 +99,7 @@ impl CostTable {
         (0..self.methods.len()).map(profile).collect()
     }
 
-    /// Both shares of every method: all that arrive, and within twice the least cost.
+    /// Both shares of every method: all that reach the tolerance, and within twice the least cost.
     fn both(rows: &[&CostRow], methods: usize) -> Vec<[f64; 2]> {
         let weights = Self::weights(rows);
         let shares = |method| [f64::INFINITY, NEARLY].map(|tau| Self::share(rows, &weights, method, tau));
@@ -134,7 +134,7 @@ impl CostTable {
         all
     }
 
-    /// The names of the methods to take: the best and those that tie with it; none where nobody arrives.
+    /// The names of the methods to take: the best and those that tie with it; none where no method reaches the tolerance.
     pub fn best(&self) -> Vec<&str> {
         let both = Self::both(&self.rows.iter().collect::<Vec<_>>(), self.methods.len());
         let sums: Vec<f64> = both.iter().map(|[reached, within_two]| reached + within_two).collect();
@@ -150,7 +150,7 @@ impl CostTable {
 }
 
 impl CostRow {
-    /// Cost of a method over the least; `None` where it does not arrive.
+    /// Cost of a method over the least; `None` where it does not reach the tolerance.
     pub fn ratio(&self, method: usize) -> Option<f64> {
         let least = self.costs.iter().copied().flatten().min_by(f64::total_cmp)?;
         Some(self.costs[method]? / least)
@@ -210,7 +210,7 @@ mod tests {
     #[test]
     fn equals_are_all_named_and_where_nobody_arrives_nobody_is() {
         assert!(table(&[("p", [NEVER; 3])]).best().is_empty() && table(&[]).best().is_empty());
-        // A situation in which nobody arrives counts for the share of all.
+        // A situation in which no method reaches the tolerance counts for the share of all.
         let half = table(&[("p", [NEVER; 3]), ("q", [1.0, 2.0, 2.1])]);
         assert_eq!(half.best(), ["a", "b"]);
         let [a, b, c] = &half.ranked()[..] else { panic!("three methods") };

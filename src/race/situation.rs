@@ -1,4 +1,4 @@
-//! What the records of a situation of the race come to: per contender its meshes with their errors and costs, or why it has
+//! What the records of a situation of the race come to: per method its meshes with their errors and costs, or why it has
 //! none, and the properties that are no errors.
 
 use crate::campaign::refinement::{Refinement, halvings, judged_errors, steps_of};
@@ -37,14 +37,14 @@ pub struct Situation {
     pub outputs: Vec<String>,
     /// Cells of its meshes: the last but one is the budget, the last twice that.
     pub meshes: Vec<usize>,
-    /// One entry per contender that may run in it, in their order.
+    /// One entry per method that may run in it, in their order.
     pub entries: Vec<Entry>,
 }
 
-/// A contender in a situation.
+/// A method in a situation.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
-    /// The contender.
+    /// The method.
     pub contender: String,
     /// Its meshes, from coarse to fine.
     pub levels: Vec<Level>,
@@ -106,12 +106,12 @@ impl Situation {
         self.meshes.get(place).copied().unwrap_or(0)
     }
 
-    /// Where a contender arrives.
+    /// Where a method reaches the tolerance.
     pub fn arrival(&self, entry: &Entry, terms: &Terms) -> Option<Arrival> {
         arrival(&entry.levels, terms, self.most_cells(terms.budget))
     }
 
-    /// Why a contender does not arrive; `None` where it does.
+    /// Why a method does not reach the tolerance; `None` where it does.
     pub fn reason(&self, entry: &Entry, terms: &Terms) -> Option<Reason> {
         if entry.refused.is_some() {
             return Some(Reason::NotApplicable);
@@ -120,7 +120,7 @@ impl Situation {
         is_missed.then(|| reason_of(&entry.levels, terms, entry.stiffness))
     }
 
-    /// The entry of a contender.
+    /// The entry of a method.
     pub fn entry(&self, contender: &str) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.contender == contender)
     }
@@ -145,7 +145,7 @@ fn entry(study: &Study, contender: &Contender, records: &[Record]) -> Entry {
     }
 }
 
-/// The runs of a contender that the race asks for, whoever ran others too: by mesh, the longest step first.
+/// The runs of a method that the race asks for, whoever ran others too: by mesh, the longest step first.
 fn ladder_of<'a>(study: &Study, mut runs: Vec<&'a Record>) -> Vec<Vec<&'a Record>> {
     let steps = steps_of(study);
     runs.sort_by_key(|record| (halvings(&steps, &record.case), record.case.cells));
@@ -232,7 +232,7 @@ mod tests {
     const TEXT: &str = "title = 'Race: a front'\nscene = 'terzaghi'\noutput.time_factors = [0.1, 0.2]\n[[sweep]]\n\
         method = ['race']\nintegrator = ['implicit']\ncells = [2, 8, 4, 16]\ntime_step = [{ growth = 0.1 }, { growth = 0.05 }]\n";
 
-    /// A race of two contenders; their errors are 1/cells times a factor per quantity, half of it at the first output.
+    /// A race of two methods; their errors are 1/cells times a factor per quantity, half of it at the first output.
     fn race() -> (Study, Vec<Record>) {
         let study = study_of("race-early-front", TEXT);
         let (_, mut records) = solved("race-early-front", &TEXT.replace("'race'", "'GIMP', 'MPM'"));

@@ -7,7 +7,7 @@ use crate::race::situation::Entry;
 use crate::record::WallSample;
 use crate::record::race_errors::RunErrors;
 
-/// A situation in which the contenders of a list need as many seconds for 1 % on their second mesh; nobody else runs.
+/// A situation in which the methods of a list need as many seconds for 1 % on their second mesh; no other runs.
 fn situation(name: &str, arrivals: &[(&str, Option<f64>)]) -> Situation {
     let family = name.split('-').next().expect("a word");
     let entry = |contender: &str| {
@@ -72,7 +72,7 @@ fn each_group_has_the_answer_of_its_own_methods_in_its_own_situations() {
     assert_eq!(told, wanted);
     let rest = findings.best(Group::Rest, ReadOut::Points).expect("somebody arrives");
     assert_eq!((rest.share, rest.within_two, rest.interval), (1.0, 0.5, [1.0, 1.0]));
-    // On the coarsest mesh nobody arrives; at 0.5 % on the finest alone.
+    // On the coarsest mesh no method reaches the tolerance; at 0.5 % on the finest alone.
     assert!(rest.holds.time && rest.holds.read_out && !rest.holds.budget && !rest.holds.tolerance);
     assert!(!rest.holds.everywhere() && rest.missed.is_empty());
     let mpm = &answer::answers(&findings.situations[..2], Group::Rest, ReadOut::Points)[0];
@@ -83,7 +83,7 @@ fn each_group_has_the_answer_of_its_own_methods_in_its_own_situations() {
         Some(Some(0.0))
     );
     assert_eq!((findings.profiles.len(), findings.operators.len()), (24, 4));
-    // Nobody runs the next step of the ladder: what arrived without it is lost.
+    // Nobody runs the next step of the ladder: what reached the tolerance without it is lost.
     assert_eq!(findings.operators[0].arrivals[..2], [Some([0, 0]); 2]);
     assert_eq!((findings.operators[0].arrivals[2], findings.operators[0].arrivals[4]), (Some([3, 0]), None));
     let of_locked = &findings.situations[1];

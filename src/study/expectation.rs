@@ -215,7 +215,7 @@ pub struct CaseDemand {
     pub error: Option<ErrorRange>,
     /// Largest drift of the mass of solids at any output, relative.
     pub solid_drift_below: Option<f64>,
-    /// Largest imbalance of the water at any output, over what the load presses out.
+    /// Largest imbalance of the water at any output, over what the load expels.
     pub water_drift_below: Option<f64>,
     /// Bounds on the largest size, at any output, of the water in the soil over its pores, minus one: of two point sets.
     pub pore_water: Option<Bounds>,

@@ -1,4 +1,4 @@
-//! Complaints that follow from keys which were left out: of a study with mistakes in its text the rest is checked too, and what
+//! Diagnostics that follow from keys which were left out: of a study with mistakes in its text the rest is checked too, and what
 //! rests on an unknown value is not said.
 
 use crate::study::diagnostic::Diagnostic;
@@ -6,7 +6,7 @@ use oedometer_foreign::mending::{Block, LeftOut};
 use std::ops::Range;
 use toml::de::DeTable;
 
-/// What a complaint rests on, besides the text at its place.
+/// What a diagnostic rests on, besides the text at its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Basis {
     /// Nothing.
@@ -19,7 +19,7 @@ pub(super) enum Basis {
     Values,
 }
 
-/// A complaint and what it rests on.
+/// A diagnostic and what it rests on.
 #[derive(Debug)]
 pub(super) struct Complaint {
     pub(super) diagnostic: Diagnostic,
@@ -34,7 +34,7 @@ pub(super) struct Doubts<'a> {
 }
 
 impl Doubts<'_> {
-    /// The complaints that do not follow from what was left out.
+    /// The diagnostics that do not follow from what was left out.
     pub(super) fn sure(&self, complaints: Vec<Complaint>) -> impl Iterator<Item = Diagnostic> {
         let root = DeTable::parse(self.text).ok();
         let is_sure = move |complaint: &Complaint| {
@@ -48,7 +48,7 @@ impl Doubts<'_> {
     }
 }
 
-/// Whether a complaint in a block may follow from a key that was left out: expectations rest on sweeps and outputs, these on the
+/// Whether a diagnostic in a block may follow from a key that was left out: expectations rest on sweeps and outputs, these on the
 /// body, and all of them on their own block.
 fn hides(key: &LeftOut, here: Option<&Block>, basis: Basis) -> bool {
     let table = here.map_or("", |block| block.table.as_str());

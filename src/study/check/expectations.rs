@@ -28,7 +28,7 @@ const DEFAULT_BAND: f64 = 0.1;
 const LEVELS_OF_A_SERIES: usize = 2;
 /// Levels of the shortest series with an order, its finest window.
 const LEVELS_OF_AN_ORDER: usize = 3;
-/// Values that a complaint lists.
+/// Values that a diagnostic lists.
 const MOST_LISTED: usize = 12;
 
 /// What the expectations of a study are checked against.
@@ -417,7 +417,7 @@ impl Checker<'_> {
         Some(ErrorRange { measure, any_places: table.sample.is_none(), bounds })
     }
 
-    /// The bounds of a table: 0 where the lower one is left out, and none where the upper one is. A complaint where no
+    /// The bounds of a table: 0 where the lower one is left out, and none where the upper one is. A diagnostic where no
     /// value lies between them.
     #[expect(clippy::ref_option, reason = "as the file of a study has it")]
     fn bounds(&mut self, range: &Typed<RangeTable>) -> Option<Bounds> {
@@ -477,7 +477,7 @@ impl Checker<'_> {
         };
         let needed = if needs_order { LEVELS_OF_AN_ORDER } else { LEVELS_OF_A_SERIES };
         let levels = levels_along(table.axis);
-        // None at all has a complaint of its own.
+        // None at all has a diagnostic of its own.
         if levels == 0 || table.class == Some(Class::NotEvaluable) {
             return;
         }
@@ -522,8 +522,8 @@ impl Checker<'_> {
         }
     }
 
-    /// The cases that a selection names along an axis; a complaint at the first key that leaves none. Nothing where
-    /// there are complaints already: they may be why.
+    /// The cases that a selection names along an axis; a diagnostic at the first key that leaves none. Nothing where
+    /// there are diagnostics already: they may be why.
     fn selected<'a>(
         &mut self,
         inputs: &Inputs,

@@ -33,7 +33,7 @@ const LEAST_WAVE_SPEED: f64 = 0.9;
 /// Share by which a strain may miss the one that its load was made of.
 const ROUND_OFF: f64 = 1e-12;
 
-/// Problems that a complaint lists.
+/// Problems that a diagnostic lists.
 const MOST_LISTED: usize = 4;
 
 /// Share of the load by which the base of a column may change the pressures of a front in a half-space.

@@ -78,9 +78,9 @@ pub struct Study {
     pub timing_repeats: usize,
     /// Whether its values are compared with golden ones.
     pub golden: GoldenRule,
-    /// Whether all contenders of the race are among its methods.
+    /// Whether all methods of the benchmark are among its methods.
     pub is_race: bool,
-    /// Contenders that cannot run here, by their names, each with the reason.
+    /// Methods that cannot run here, by their names, each with the reason.
     pub not_applicable: Vec<(&'static str, String)>,
     /// Warnings, as text.
     pub warnings: Vec<String>,
@@ -90,7 +90,7 @@ impl Study {
     /// Checks a study.
     ///
     /// # Errors
-    /// Every complaint with its place.
+    /// Every diagnostic with its place.
     pub fn check(source: &StudySource) -> Result<Self, StudyError> {
         Self::check_for(source, Purpose::Solving)
     }
@@ -98,7 +98,7 @@ impl Study {
     /// Checks a study for a purpose.
     ///
     /// # Errors
-    /// Every complaint with its place.
+    /// Every diagnostic with its place.
     pub fn check_for(source: &StudySource, purpose: Purpose) -> Result<Self, StudyError> {
         let checked = |file: StudyFile| {
             let mut checker = Checker {
@@ -147,12 +147,12 @@ impl Study {
         self.solvers.iter().find(|solver| case.method == solver.method())
     }
 
-    /// Whether an expectation says that a record is to end as it did. How a contender of a race ends is a result.
+    /// Whether an expectation says that a record is to end as it did. How a method of the benchmark ends is a result.
     pub fn foresees(&self, record: &Record) -> bool {
         self.is_race || self.case_expectations.iter().any(|expectation| expectation.foresees(record))
     }
 
-    /// Whether an expectation says that a check of a record is to fail. How sound a contender's runs are is a result of the race.
+    /// Whether an expectation says that a check of a record is to fail. How sound a method's runs are is a result of the race.
     pub fn foresees_complaints(&self, record: &Record) -> bool {
         self.is_race
             || self.case_expectations.iter().any(|expectation| expectation.foresees_complaints(record))
@@ -164,7 +164,7 @@ impl Study {
     }
 }
 
-/// Complaints as they come up; every method gives a usable value or none.
+/// Diagnostics as they come up; every method gives a usable value or none.
 struct Checker<'a> {
     source: &'a StudySource,
     complaints: Vec<Complaint>,
@@ -175,7 +175,7 @@ struct Checker<'a> {
     solvers: Vec<ExternalSolver>,
     /// Whether a sweep names the race.
     is_race: bool,
-    /// Contenders of a race that the study refuses, with the reason.
+    /// Methods of the benchmark that the study refuses, with the reason.
     not_applicable: Vec<(&'static str, String)>,
     /// Warnings, ready to print.
     warnings: Vec<String>,
@@ -210,12 +210,12 @@ impl Common {
 }
 
 impl Checker<'_> {
-    /// Notes a complaint that rests on the values of its block and those before it.
+    /// Notes a diagnostic that rests on the values of its block and those before it.
     fn complain(&mut self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) {
         self.complain_by(Basis::Values, span, message, help);
     }
 
-    /// Notes a complaint, with what it rests on.
+    /// Notes a diagnostic, with what it rests on.
     fn complain_by(
         &mut self,
         basis: Basis,
@@ -374,7 +374,7 @@ impl Checker<'_> {
         let rule = **typed;
         let expects = !expectations.is_empty() || !case_expectations.is_empty();
         match rule {
-            // An expectation with a mistake in it has its own complaint.
+            // An expectation with a mistake in it has its own diagnostic.
             GoldenRule::None if !expects && self.complaints.is_empty() => self.complain(
                 typed.span(),
                 "nothing would be judged: the study has neither golden values nor expectations",

@@ -145,7 +145,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The time factor that an expectation names, by itself or by a time; none, with a complaint, where it names
+    /// The time factor that an expectation names, by itself or by a time; none, with a diagnostic, where it names
     /// neither, both, or a time that is several time factors.
     pub(super) fn expected_time_factor(
         &mut self,
@@ -179,7 +179,7 @@ impl Checker<'_> {
         let factors = in_order(cases.map(|case| factor_of(**time, case)).collect());
         match factors.as_slice() {
             [factor] => Some(*factor),
-            // That no case is named has a complaint of its own.
+            // That no case is named has a diagnostic of its own.
             [] => Some(f64::NAN),
             [first, .., last] => {
                 self.complain_by(

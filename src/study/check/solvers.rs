@@ -20,7 +20,7 @@ const MOST_REPEATS: i64 = 100;
 const MOST_AT_ONCE: i64 = 1024;
 /// Longest pattern of a time, letters.
 const LONGEST_PATTERN: usize = 500;
-/// By what a program may be known, so that its results are taken over.
+/// By what a program may be known, so that its results are reused.
 const REUSES: [&str; 1] = ["version"];
 /// What stands for the mesh in the names of files.
 const MESH: &str = "cells";
@@ -261,7 +261,7 @@ impl Checker<'_> {
         Some(typed.to_string())
     }
 
-    /// By what the program is known beside its command's files, where the study declares that its results may be taken over.
+    /// By what the program is known beside its command's files, where the study declares that its results may be reused.
     fn known_by(&mut self, table: &SolverTable, folder: &Path) -> Option<Vec<String>> {
         let named = table.known_by.as_ref().map_or(Vec::new(), |list| words_of(list));
         for typed in table.known_by.iter().flat_map(|list| &***list) {

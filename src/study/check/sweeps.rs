@@ -28,8 +28,8 @@ const MOST_BYTES: f64 = 32e9;
 const LONGEST_BY_DEFAULT: f64 = 120.0;
 
 impl Checker<'_> {
-    /// Runs a check of a block: once, or for every contender where the block names the race. A contender that the check
-    /// refuses cannot run in this study, with the reason; a block that no contender can run is a mistake of its own.
+    /// Runs a check of a block: once, or for every method where the block names the race. A method that the check
+    /// refuses cannot run in this study, with the reason; a block that no method can run is a mistake of its own.
     pub(super) fn for_each_entry(
         &mut self,
         table: &SweepTable,
@@ -62,7 +62,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Leaves a contender out of the race, with the first reason.
+    /// Leaves a method out of the race, with the first reason.
     pub(super) fn leave_out(&mut self, name: &'static str, why: &str) {
         if self.not_applicable.iter().all(|(known, _)| *known != name) {
             self.not_applicable.push((name, why.to_owned()));
@@ -139,7 +139,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Whether the sweeps so far have no more cases than a study may; a complaint where they do, before any is made.
+    /// Whether the sweeps so far have no more cases than a study may; a diagnostic where they do, before any is made.
     fn can_be_multiplied_out(&mut self, start: &Range<usize>, sweep: &Sweep) -> bool {
         let count = sweep.count();
         let so_far = self.multiplied_out;

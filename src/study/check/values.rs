@@ -131,7 +131,7 @@ impl Checker<'_> {
         self.method_fits(SolverName::Own(method), place, scene)
     }
 
-    /// An input of a contender, where the scene allows it.
+    /// An input of a method, where the scene allows it.
     pub(super) fn entered(&mut self, value: Value, span: TextSpan, scene: &'static Scene) -> Option<Value> {
         let Value::Method(method) = value else { return Some(value) };
         self.method_fits(method, span, scene).map(Value::Method)
@@ -267,7 +267,7 @@ impl Checker<'_> {
         self.number(**typed, typed.span(), &name, Range::Positive, &usual, unit).unwrap_or(default)
     }
 
-    /// A number in a range; a complaint where it is not in it.
+    /// A number in a range; a diagnostic where it is not in it.
     fn number(
         &mut self,
         value: f64,

@@ -63,7 +63,7 @@ pub struct Arguments {
     /// Number of cases that run in parallel [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
-    /// Write what counted work costs on this machine, measured by the records of the race
+    /// Write what counted work costs on this machine, measured by the records of the benchmark
     #[arg(long, value_name = "FILE", hide = true)]
     calibrate: Option<PathBuf>,
     #[command(flatten)]
