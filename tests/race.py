@@ -89,7 +89,7 @@ def holds(race, group, readout, method):
 
 
 def leader(race, readout):
-    """Who reaches 1 % most often of all methods in all problems, in how many it is the cheapest, and its largest multiple of the least work."""
+    """Who reaches 1 % most often of all methods in all problems, and its largest multiple of the least work."""
     problems = defaultdict(dict)
     for row in race.rows:
         if (row["readout"], row["time"]) == (readout, "all"):
@@ -107,7 +107,7 @@ def leader(race, readout):
     counts = {name: sum(costs.get(form(name, problem)) is not None for problem, costs in problems.items()) for name in of_total}
     most = max(counts.values(), default=0)
     return {"readout": readout, "method": method, "as_often": as_often, "reached": len(ratios[method]), "of": len(problems),
-            "cheapest": sum(one <= 1 for one in ratios[method]), "dearest": max(ratios[method]),
+            "dearest": max(ratios[method]),
             "following": most if most >= len(ratios[method]) else None}
 
 
