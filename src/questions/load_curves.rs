@@ -68,7 +68,8 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
             chart.series.push(series.style(Style::Line));
         }
     }
-    let ends_at = |series: &Series| series.points.last().map_or(f64::NAN, |(_, load)| load / LOAD_FACTOR - 1.0);
+    let ends_at =
+        |series: &Series| series.points.last().map_or(f64::NAN, |(_, load)| load / LOAD_FACTOR - 1.0);
     let ends: Vec<(String, f64)> = chart.series.iter().map(|one| (one.name.clone(), ends_at(one))).collect();
     let (kept, off): (Vec<_>, Vec<_>) = ends.into_iter().partition(|(_, end)| end.abs() <= KEPT_WITHIN);
     chart.title = title_of(&kept, chart.series.len());
@@ -99,9 +100,15 @@ fn title_of(kept: &[(String, f64)], methods: usize) -> String {
 
 /// Which lines end outside of the figure, and where.
 fn caption_of(off: &[(String, f64)]) -> String {
-    let ends = off.iter().map(|(method, end)| format!("{method} at {} times the exact load", number::short(1.0 + end)));
+    let ends = off
+        .iter()
+        .map(|(method, end)| format!("{method} at {} times the exact load", number::short(1.0 + end)));
     let ends = ends.collect::<Vec<_>>().join(", ");
-    if off.is_empty() { "All lines end within the figure.".to_owned() } else { format!("Off the scale at the end: {ends}.") }
+    if off.is_empty() {
+        "All lines end within the figure.".to_owned()
+    } else {
+        format!("Off the scale at the end: {ends}.")
+    }
 }
 
 #[cfg(test)]
@@ -175,9 +182,15 @@ mod tests {
         assert!(curves.iter().all(|(_, end)| *end == 4.0), "{curves:?}");
         // Half of the exact load and four times of it are named, as the figure does not show them.
         let off = [("A", -0.5), ("B", 3.0)].map(|(name, end)| (name.to_owned(), end));
-        assert_eq!(caption_of(&off), "Off the scale at the end: A at 0.50 times the exact load, B at 4.0 times the exact load.");
+        assert_eq!(
+            caption_of(&off),
+            "Off the scale at the end: A at 0.50 times the exact load, B at 4.0 times the exact load."
+        );
         let kept = [("A", 0.04), ("B", -0.011)].map(|(name, end)| (name.to_owned(), end));
-        assert_eq!(title_of(&kept, 3), "2 of 3 methods end within 5 % of the collapse load; B is nearest, 1.10 % off");
+        assert_eq!(
+            title_of(&kept, 3),
+            "2 of 3 methods end within 5 % of the collapse load; B is nearest, 1.10 % off"
+        );
         assert_eq!(title_of(&[], 1), "0 of 1 methods end within 5 % of the collapse load");
         for (study, records) in [(&study, &[][..]), (&study, &records[1..2]), (&column, &records)] {
             assert_eq!(found(study, records), None);

@@ -174,7 +174,11 @@ pub fn consolidation(shown: &[&Record], own: ReferenceKind) -> Result<Figure, Ex
 /// How far a result is from theory at the output where it is farthest.
 pub fn off_theory(what: &str, method: &str, found: Option<(f64, f64)>) -> String {
     found.map_or(format!("{what} of {method} beside theory"), |(error, time)| {
-        format!("{what} of {method} is up to {} off, at T_v = {}", number::percent(error), number::time_factor(time))
+        format!(
+            "{what} of {method} is up to {} off, at T_v = {}",
+            number::percent(error),
+            number::time_factor(time)
+        )
     })
 }
 
@@ -187,13 +191,20 @@ fn settlement_title(shown: &[&Record], reference: &str) -> String {
     ranked.sort_by(|a, b| a.1.0.total_cmp(&b.1.0));
     let nearest = ranked.first().map(|(record, off)| off_theory("settlement", &name(record), Some(*off)));
     let farthest = ranked.last().filter(|_| ranked.len() > 1);
-    let farthest = farthest.map(|(record, off)| format!("; of {} up to {}", name(record), number::percent(off.0)));
-    let title = nearest.map_or("settlement beside theory".to_owned(), |nearest| nearest + &farthest.unwrap_or_default());
+    let farthest =
+        farthest.map(|(record, off)| format!("; of {} up to {}", name(record), number::percent(off.0)));
+    let title = nearest
+        .map_or("settlement beside theory".to_owned(), |nearest| nearest + &farthest.unwrap_or_default());
     words::capitalised(&title)
 }
 
 /// The largest error over all outputs, and its time factor.
-pub fn largest_error(record: &Record, quantity: Quantity, sample: Sample, reference: &str) -> Option<(f64, f64)> {
+pub fn largest_error(
+    record: &Record,
+    quantity: Quantity,
+    sample: Sample,
+    reference: &str,
+) -> Option<(f64, f64)> {
     let error = |time: &f64| Some(first_error(record, quantity, sample, reference, *time)?.abs());
     let errors = record.case.time_factors.iter().filter_map(|time| Some((error(time)?, *time)));
     errors.max_by(|a, b| a.0.total_cmp(&b.0))
@@ -211,7 +222,10 @@ fn too_coarse(record: &Record, records: &[Record], own: ReferenceKind) -> Option
     let ((off, _), (least, _)) = (off(record)?, off(finest)?);
     (off > COARSE && least < off / 2.0).then(|| {
         let [cells, finest] = [record, finest].map(|record| record.case.cells);
-        format!(" {cells} cells are too few here: on {finest} the pressure is up to {} off.", number::percent(least))
+        format!(
+            " {cells} cells are too few here: on {finest} the pressure is up to {} off.",
+            number::percent(least)
+        )
     })
 }
 

@@ -280,11 +280,14 @@ impl<'a> SeriesTable<'a> {
             LevelError::NotRun => Cell::missing("not run"),
         }));
         if self.has_orders() {
-            let why = if one.class().is_some() { "its class has none" } else { "too few levels for an order" };
+            let why =
+                if one.class().is_some() { "its class has none" } else { "too few levels for an order" };
             row.push(Cell::of(one.order(), Cell::Order, why));
         }
         if self.has_classes() {
-            row.push(one.class().map_or(Cell::missing("of fewer than three levels"), |class| class.name().into()));
+            row.push(
+                one.class().map_or(Cell::missing("of fewer than three levels"), |class| class.name().into()),
+            );
         }
         row
     }

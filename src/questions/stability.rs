@@ -82,10 +82,14 @@ fn row_of(record: &Record) -> Option<Vec<Cell>> {
     ];
     row.extend(found.probes.iter().flat_map(|probe| {
         let mood = Mood::of(probe.is_as_predicted());
-        [Cell::Verdict(mood, end_of(probe).to_owned()), Cell::Count(probe.failure.as_ref().map_or(probe.steps, |one| one.step))]
+        [
+            Cell::Verdict(mood, end_of(probe).to_owned()),
+            Cell::Count(probe.failure.as_ref().map_or(probe.steps, |one| one.step)),
+        ]
     }));
     let growing = found.probes.iter().find_map(|probe| Some((probe, probe.failure.as_ref()?.growth?)));
-    let factor = |growth: Option<f64>, why: &str| Cell::of(growth, |growth| Cell::Text(format!("{growth:.4}")), why);
+    let factor =
+        |growth: Option<f64>, why: &str| Cell::of(growth, |growth| Cell::Text(format!("{growth:.4}")), why);
     row.extend([
         factor(growing.map(|(_, seen)| seen), "nothing grew"),
         factor(growing.and_then(|(probe, _)| probe.predicted_growth), "not predicted"),
@@ -171,7 +175,8 @@ mod tests {
             table(&[record]).rows.remove(0)
         };
         let found = |observed: Option<f64>, unknown: Option<&str>| with(observed, unknown, [0, 1]);
-        let ends = |places: [usize; 2]| with(None, None, places)[6..].iter().map(Cell::show).collect::<Vec<_>>();
+        let ends =
+            |places: [usize; 2]| with(None, None, places)[6..].iter().map(Cell::show).collect::<Vec<_>>();
         assert_eq!(ends([0, 2])[..4], ["✗ ran to the end", "7", "✓ unstable", "9"].map(str::to_owned));
         assert_eq!(ends([0, 2])[4..], ["1.1250", "1.0625"]);
         assert_eq!(ends([0, 3])[4..], ["1.2500", "–"]);

@@ -180,11 +180,7 @@ fn row(
     row.extend(has_integrator.then_some(integrator));
     row.push(Cell::Count(choice.cells as u64));
     row.extend(has_points.then_some(Cell::Count(choice.points_per_cell as u64)));
-    row.extend([
-        step,
-        Cell::Percent(choice.error),
-        Cell::Text(number::time_factor(choice.time_factor)),
-    ]);
+    row.extend([step, Cell::Percent(choice.error), Cell::Text(number::time_factor(choice.time_factor))]);
     row
 }
 
@@ -503,7 +499,9 @@ mod tests {
 
     #[test]
     fn points_in_a_cell_and_integrators_have_a_column_where_runs_have_others() {
-        for (points, told) in [("[2]", &["MPM", "4"][..]), ("[2, 3]", &["MPM", "4", "2"]), ("[3, 2]", &["MPM", "4", "2"])] {
+        for (points, told) in
+            [("[2]", &["MPM", "4"][..]), ("[2, 3]", &["MPM", "4", "2"]), ("[3, 2]", &["MPM", "4", "2"])]
+        {
             let text = format!(
                 "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
                  integrator = ['implicit']\ncells = [4, 8]\npoints_per_cell = {points}\n"

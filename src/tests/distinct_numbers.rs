@@ -151,7 +151,10 @@ fn every_check_and_group_has_its_own_number() {
         let expected = [
             ("points at the start", Cell::Count(start.points as u64)),
             ("volume at the start, relative error", Cell::Measured(start.volume_error)),
-            ("undrained pressure at the start, relative error", Cell::Measured(start.undrained_pressure_error)),
+            (
+                "undrained pressure at the start, relative error",
+                Cell::Measured(start.undrained_pressure_error),
+            ),
             ("unbalanced force at the start, over the load", Cell::Measured(start.unbalanced_force)),
             ("mass of solids, drift", Cell::Measured(last.solid_mass_drift)),
             ("water-mass error / expelled water", Cell::Measured(last.water_imbalance)),

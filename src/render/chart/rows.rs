@@ -322,10 +322,7 @@ mod tests {
             series: vec!["2 of 2".to_owned()],
             without: "does not arrive".to_owned(),
             heads: vec!["cheapest".to_owned(), "cells".to_owned()],
-            rows: vec![
-                row("a", "F", ["", ""], &["MPM", "8"]),
-                row("b", "G", ["locks", ""], &["none"]),
-            ],
+            rows: vec![row("a", "F", ["", ""], &["MPM", "8"]), row("b", "G", ["locks", ""], &["none"])],
         });
         chart
     }

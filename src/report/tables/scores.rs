@@ -81,7 +81,9 @@ fn place_cells(worst: Option<&WorstPlace>, is_plane: bool) -> Vec<Cell> {
     let mut cells = vec![Cell::of(worst.map(|worst| worst.zeta), Cell::Number, "")];
     cells.extend(is_plane.then(|| Cell::of(worst.and_then(|worst| worst.x), Cell::Number, "")));
     cells.extend(match worst {
-        Some(worst) => [Cell::Percent(worst.share), Cell::Measured(worst.computed), Cell::Measured(worst.exact)],
+        Some(worst) => {
+            [Cell::Percent(worst.share), Cell::Measured(worst.computed), Cell::Measured(worst.exact)]
+        }
         None => std::array::from_fn(|_| Cell::missing("")),
     });
     cells
