@@ -4,6 +4,7 @@ use crate::cli::commands::schema::{Document, schema_of};
 use crate::study::check::Study;
 use crate::study::file::StudySource;
 use oedometer_foreign::synonyms::{FIELD_TERMS, KEY_NAMES, read_as};
+use oedometer_soil::laws::Law;
 
 const SOUND: &str = "title = \"t\"\nscene = \"terzaghi\"\n[material]\nporosity = 0.3\n\
                      [[sweep]]\nmethod = [\"GIMP\"]\ncells = [4, 8]\n";
@@ -39,7 +40,7 @@ porosity = 0.3 ¦ porosity = "30 %" ¦ 4 ¦ `porosity` takes a number, not `"30 
 porosity = 0.3 ¦ porosity = true ¦ 4 ¦ `porosity` takes a number, not `true` ¦ write it like `porosity = 0.1`
 porosity = 0.3 ¦ porosity = 2026-01-01 ¦ 4 ¦ `porosity` takes a number, not `2026-01-01` ¦ write it like `porosity = 0.1`
 porosity = 0.3 ¦ porosity = [0.3] ¦ 4 ¦ `porosity` takes a number, not `[0.3]` ¦ several values belong in a [[sweep]]: `porosity = [0.3]`
-porosity = 0.3 ¦ law = "linaer" ¦ 4 ¦ no law is called `linaer` ¦ did you mean `linear`? It can be `linear`, `log-linear`, `porosity-dependent`, `engineering`, `neo-hookean`, `preconsolidated`, `von-mises`
+porosity = 0.3 ¦ law = "linaer" ¦ 4 ¦ no law is called `linaer` ¦ did you mean `linear`? It can be {laws}
 porosity = 0.3 ¦ law = 3 ¦ 4 ¦ `law` takes a word in quotes, not `3` ¦ write it like `law = "linear"`
 [material] ¦ integrator.mapping_back = 1⏎[material] ¦ 3 ¦ `mapping_back` takes true or false, not `1` ¦ write it like `mapping_back = true`
 [material] ¦ output.references = "terzaghi"⏎[material] ¦ 3 ¦ `references` takes a list, not `"terzaghi"` ¦ write `references = ["terzaghi"]`
@@ -61,12 +62,14 @@ title = "t"⏎ ¦  ¦ 1 ¦ `title` is missing in the study ¦ add `title = "..."
 
 #[test]
 fn every_mistake_is_told_at_its_line_with_what_to_write() {
+    let laws = Law::NAMES.map(|law| format!("`{law}`")).join(", ");
     for row in MISTAKES.trim().lines() {
-        let fields: Vec<String> = row.split(" ¦ ").map(|field| field.replace('⏎', "\n")).collect();
+        let row = row.replace("{laws}", &laws).replace('⏎', "\n");
+        let fields: Vec<&str> = row.split(" ¦ ").collect();
         let [from, to, line, message, help] = &fields[..] else { panic!("{row}") };
         assert!(SOUND.contains(from), "{row}");
         let (at, told, right) = complaint(&SOUND.replacen(from, to, 1));
-        assert_eq!((&at.to_string(), &told, &right), (line, message, help), "{to}");
+        assert_eq!((at.to_string().as_str(), told.as_str(), right.as_str()), (*line, *message, *help), "{to}");
     }
     for (table, parts) in [
         ("material", ["`material` takes a table", "single brackets: [material]"]),
@@ -128,7 +131,8 @@ cells = [4, 8] ¦ cells = [4, 8]⏎end_time = [5.0] ¦ a run ends at its last ou
 #[test]
 fn a_synonym_is_answered_with_the_key_and_makes_no_other_mistake() {
     for row in SYNONYMS.trim().lines() {
-        let fields: Vec<String> = row.split(" ¦ ").map(|field| field.replace('⏎', "\n")).collect();
+        let row = row.replace("{laws}", &laws).replace('⏎', "\n");
+        let fields: Vec<&str> = row.split(" ¦ ").collect();
         let [from, to, help] = &fields[..] else { panic!("{row}") };
         let text = SOUND.replacen(from, to, 1);
         // A sweep without its cells lacks them whatever stands there instead.
