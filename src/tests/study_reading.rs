@@ -69,7 +69,7 @@ fn every_mistake_is_told_at_its_line_with_what_to_write() {
         let [from, to, line, message, help] = &fields[..] else { panic!("{row}") };
         assert!(SOUND.contains(from), "{row}");
         let (at, told, right) = complaint(&SOUND.replacen(from, to, 1));
-        assert_eq!((at.to_string().as_str(), told.as_str(), right.as_str()), (*line, *message, *help), "{to}");
+        assert_eq!((&*at.to_string(), &*told, &*right), (*line, *message, *help), "{to}");
     }
     for (table, parts) in [
         ("material", ["`material` takes a table", "single brackets: [material]"]),
@@ -131,8 +131,7 @@ cells = [4, 8] ¦ cells = [4, 8]⏎end_time = [5.0] ¦ a run ends at its last ou
 #[test]
 fn a_synonym_is_answered_with_the_key_and_makes_no_other_mistake() {
     for row in SYNONYMS.trim().lines() {
-        let row = row.replace("{laws}", &laws).replace('⏎', "\n");
-        let fields: Vec<&str> = row.split(" ¦ ").collect();
+        let fields: Vec<String> = row.split(" ¦ ").map(|field| field.replace('⏎', "\n")).collect();
         let [from, to, help] = &fields[..] else { panic!("{row}") };
         let text = SOUND.replacen(from, to, 1);
         // A sweep without its cells lacks them whatever stands there instead.
