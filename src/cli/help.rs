@@ -78,21 +78,13 @@ const GROUPS: [Group; 5] = [
     ),
 ];
 
-/// Options for clusters, other builds and the development of methods.
-const EXPERT: [&str; 19] = [
+/// Options for many cases, other builds and the development of methods.
+const EXPERT: [&str; 11] = [
     "shard",
     "balance",
     "resume",
     "compress",
-    "engine",
     "tasks",
-    "partition",
-    "time",
-    "cores",
-    "sbatch",
-    "attempts",
-    "detach",
-    "dry_run",
     "case_files",
     "annotate",
     "summary",

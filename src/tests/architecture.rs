@@ -46,7 +46,6 @@ fn no_reader_opens_files_by_itself() {
         "study/check/solvers",
         "score",
         "cli/commands/score",
-        "cli/slurm",
     ] {
         readers.extend(sources_below(&root.join(folder)));
     }
