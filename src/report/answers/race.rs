@@ -4,7 +4,7 @@ use crate::campaign::refinement::MOST_WORK;
 use crate::case::contender::CONTENDERS;
 use crate::judge::study_check::StudyCheck;
 use crate::questions::choice::{
-    LARGEST_TAU, SHOWN, cheapest, dot_plot, facts, family_table, places_of, practice, reason_words, words_of,
+    LARGEST_TAU, SHOWN, cheapest, dot_plot, facts, family_table, places_of, reason_words, words_of,
 };
 use crate::questions::finding::Finding;
 use crate::questions::sentence;
@@ -210,7 +210,7 @@ fn profile_figure(findings: &RaceFindings, group: Group, read_out: ReadOut) -> F
     Figure::new(format!("race-profile-{}-{}", group.name(), read_out.name()), chart, caption)
 }
 
-/// The page of every method: first what a practitioner asks, then answers, budgets, profiles, the whole matrix and properties.
+/// The page of every method: answers, profiles, budgets, the whole matrix and properties.
 pub fn matrix_page(findings: &RaceFindings) -> Page {
     let by_read_out = |blocks: &dyn Fn(ReadOut) -> Vec<Block>| {
         Block::Switch(ReadOut::BOTH.map(|one| (capitalised(places_of(one)), blocks(one))).to_vec())
@@ -220,11 +220,6 @@ pub fn matrix_page(findings: &RaceFindings) -> Page {
         (words, vec![Block::Figure(profile_figure(findings, group, read_out))])
     });
     let mut sections = vec![
-        Section::new(
-            "What 1 % takes",
-            "practice",
-            vec![by_read_out(&|one| vec![Block::Table(practice(findings, one))])],
-        ),
         Section::new(
             "Which method, and where does it hold?",
             "answers",
