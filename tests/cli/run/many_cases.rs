@@ -1,7 +1,7 @@
 //! Many cases: packed records, shares, tables that are made without reading everything again.
 
 use crate::packs::{lines, members, only_pack, packs};
-use crate::program::{PROGRAM, Told, call, call_with, folder_with, table_without_times};
+use crate::program::{PROGRAM, Told, call, folder_with, table_without_times};
 use oedometer::{Case, Failure, FailureKind, Record, RecordStore, Status, Study, StudySource, Tier};
 use std::fs;
 use std::ops::Range;
