@@ -37,7 +37,7 @@ struct Facts {
 }
 
 /// The least work of a method.
-#[derive(serde::Serialize, schemars::JsonSchema)]
+#[derive(serde::Serialize)]
 struct MethodWork {
     method: String,
     /// Counted work, s.
@@ -109,15 +109,16 @@ fn chart(precision: &WorkPrecision<'_>) -> Chart {
     );
     chart.size = Size { width: 1000.0, plot_height: 460.0 };
     let fronts = precision.fronts();
-    let methods = distinct(fronts.iter().map(|front| front.method.to_string()));
+    let methods = distinct(fronts.iter().map(|runs| runs[0].record.case.method.to_string()));
     let names: Vec<&str> = methods.iter().map(String::as_str).collect();
     let slots = slots(&names);
-    for front in &fronts {
-        let method = front.method.to_string();
+    for runs in &fronts {
+        let case = &runs[0].record.case;
+        let method = case.method.to_string();
         let place = methods.iter().position(|other| *other == method).unwrap_or_default();
-        let marker = IntegratorKind::ALL.iter().position(|kind| *kind == front.integrator);
-        let name = format!("{method}, {}", front.integrator.name());
-        let points = front.runs.iter().map(|run| (run.work, run.error)).collect();
+        let marker = IntegratorKind::ALL.iter().position(|kind| *kind == case.integrator);
+        let name = format!("{method}, {}", case.integrator.name());
+        let points = runs.iter().map(|run| (run.work, run.error)).collect();
         let series = Series::new(name, points);
         chart.series.push(series.slot(slots[place]).marker(marker.unwrap_or_default()));
     }

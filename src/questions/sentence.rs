@@ -31,15 +31,12 @@ fn environment() -> Environment<'static> {
     });
     environment.add_filter("clock_time", clock_time);
     environment.add_filter("duration", duration);
-    environment.add_filter("error", number::error);
     environment.add_filter("error_percent", number::percent);
     environment.add_filter("fine_percent", |share: f64| format!("{:.2} %", 100.0 * share));
     environment.add_filter("millimetres", |metres: f64| number::with_unit(1e3 * metres, "mm"));
     environment.add_filter("names", |names: Vec<String>, most: Option<usize>| in_words(&names, most));
     environment.add_filter("number", number::number);
-    environment.add_filter("order", number::order);
     environment.add_filter("percent", number::rounded_percent);
-    environment.add_filter("ratio", |ratio: f64| number::fixed(ratio, 2));
     environment.add_filter("seconds", number::seconds);
     environment.add_filter("short", number::short);
     environment.add_filter("signed_percent", |share: f64| {
@@ -47,10 +44,6 @@ fn environment() -> Environment<'static> {
         format!("{sign}{:.1} %", 100.0 * share.abs())
     });
     environment.add_filter("solution", |reference: String| words::solution(&reference));
-    environment.add_filter("step", |label: String| {
-        let seconds = label.strip_prefix("seconds=").and_then(|text| text.parse().ok());
-        seconds.map_or(label, |seconds| format!("Δt = {} s", number::number(seconds)))
-    });
     environment.add_filter("time_factor", number::time_factor);
     environment.add_filter("typed", typed);
     environment

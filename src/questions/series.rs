@@ -17,7 +17,7 @@ use oedometer_soil::wording::clock_time;
 pub type Measured = (Quantity, Sample);
 
 /// What has a series, in the order of a table.
-const MEASURED: [Measured; 6] = [
+pub const MEASURED: [Measured; 6] = [
     (Quantity::Pressure, Sample::Points),
     (Quantity::Pressure, Sample::Centres),
     (Quantity::EffectiveStress, Sample::Points),

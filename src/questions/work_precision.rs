@@ -1,6 +1,6 @@
 //! Runs of a study by error and counted work: the fronts of methods, and the cheapest within each tolerance.
 
-use crate::case::{IntegratorKind, Quantity, SolverName};
+use crate::case::{Quantity, SolverName};
 use crate::judge::paths::{first_error, grouped};
 use crate::judge::reaching::QuotedRuns;
 use crate::measure::statistics::largest;
@@ -68,32 +68,20 @@ impl<'a> WorkPrecision<'a> {
     }
 }
 
-/// The runs of a method with an integrator that no other of them beats in both time and error.
-#[derive(Clone, Debug)]
-pub struct MethodFront<'b, 'a> {
-    /// Method.
-    pub method: SolverName,
-    /// Integrator.
-    pub integrator: IntegratorKind,
-    /// The runs, the cheapest first.
-    pub runs: Vec<&'b CostedRun<'a>>,
-}
-
 impl<'a> WorkPrecision<'a> {
-    /// The front of each method with each integrator.
-    pub fn fronts(&self) -> Vec<MethodFront<'_, 'a>> {
+    /// Of each method with each integrator the runs that no other of them beats in both work and error, the cheapest first.
+    pub fn fronts(&self) -> Vec<Vec<&CostedRun<'a>>> {
         let groups = grouped(&self.runs, |run| {
             (run.record.case.method.to_string(), run.record.case.integrator.name())
         });
         let fronts = groups.into_iter().map(|(_, runs)| {
             let point = |run: &&CostedRun<'_>| CostPoint { cost: run.work, error: run.error };
             let points: Vec<_> = runs.iter().map(point).collect();
-            let best = runs.iter().zip(front(&points)).filter(|(_, on_front)| *on_front);
-            MethodFront {
-                method: runs[0].record.case.method,
-                integrator: runs[0].record.case.integrator,
-                runs: best.map(|(run, _)| *run).collect(),
-            }
+            runs.into_iter()
+                .zip(front(&points))
+                .filter(|(_, on_front)| *on_front)
+                .map(|(run, _)| run)
+                .collect()
         });
         fronts.collect()
     }
@@ -194,7 +182,7 @@ time_step = [{ growth = 0.005 }]
         assert!(work[0] < work[1] && work[1] < work[2], "{work:?}");
         let precision = WorkPrecision::of(&records, "terzaghi", &[]).expect("runs");
         let fronts = precision.fronts();
-        let best = fronts.iter().flat_map(|front| &front.runs).map(|run| (run.work, run.error));
+        let best = fronts.iter().flatten().map(|run| (run.work, run.error));
         assert_eq!(best.collect::<Vec<_>>(), [(work[0], 8e-3), (work[2], 8e-4)]);
         let cheapest =
             precision.cheapest.iter().map(|one| (one.run.as_ref().map(|run| run.work), one.methods.len()));

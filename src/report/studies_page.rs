@@ -5,7 +5,6 @@ use crate::case::grouping::{distinct, grouped};
 use crate::case::method_words::method_words;
 use crate::case::quantity::Norm;
 use crate::judge::study_results::StudyResults;
-use crate::measure::statistics::larger;
 use crate::record::provenance::Provenance;
 use crate::render::page::{Block, Page, Section, slug};
 use crate::render::table::{Cell, Mood, Table, columns};
@@ -13,7 +12,6 @@ use crate::report::study_page::mood_of;
 use crate::study::check::Study;
 use oedometer_scenes::scene::Question;
 use oedometer_soil::wording::count_of;
-use std::collections::BTreeMap;
 
 /// The list of studies, and how their numbers were made.
 pub fn studies_page(all: &[StudyResults<'_>]) -> Page {
@@ -27,7 +25,7 @@ pub fn studies_page(all: &[StudyResults<'_>]) -> Page {
             blocks: vec![Block::Table(studies_table(studies))],
         })
         .collect();
-    sections.push(numbers_section(all));
+    sections.push(numbers_section());
     sections.push(names_section(all));
     let link = |words: &str, target: &str| (words.to_owned(), target.to_owned());
     let first = all.iter().flat_map(|one| one.records).next();
@@ -117,37 +115,13 @@ fn met_cell(one: &StudyResults<'_>) -> Cell {
     Cell::Verdict(mood_of(one), words)
 }
 
-/// Norms and references of all records.
-fn numbers_section(all: &[StudyResults<'_>]) -> Section {
+/// The norms.
+fn numbers_section() -> Section {
     let norms = Norm::ALL.iter().map(|norm| vec![Cell::Code(norm.name().to_owned()), norm.formula().into()]);
-    // Of each the most terms and the largest bound of all records.
-    let mut used: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
-    for reference in all.iter().flat_map(|one| one.records).flat_map(|record| &record.references) {
-        let (terms, tail_bound) = used.entry(reference.name.as_str()).or_default();
-        *terms = (*terms).max(reference.terms);
-        *tail_bound = larger(*tail_bound, reference.tail_bound);
-    }
-    let references = used.into_iter().map(|(name, (terms, tail_bound))| {
-        vec![Cell::Code(name.to_owned()), Cell::Count(terms as u64), Cell::Error(tail_bound)]
-    });
-    let blocks = vec![
-        Block::Table(
-            Table::of("Norms", columns("norm | formula: x computed, x̂ exact, V volume of a sample"), norms)
-                .note("the exact field is evaluated at the Lagrangian place of the sample"),
-        ),
-        Block::Table(
-            Table::of(
-                "References",
-                columns("reference | > terms at most | > tail bound, over the load"),
-                references,
-            )
-            .note(
-                "terzaghi: with the water's compressibility; terzaghi-incompressible: the textbook's; \
-                 single-mode: first eigenmode, with the water's compressibility",
-            ),
-        ),
-    ];
-    Section::new("How the numbers were made", "how", blocks)
+    let norms =
+        Table::of("Norms", columns("norm | formula: x computed, x̂ exact, V volume of a sample"), norms)
+            .note("the exact field is evaluated at the Lagrangian place of the sample");
+    Section::new("How the numbers were made", "how", vec![Block::Table(norms)])
 }
 
 /// What the names of the methods stand for.
@@ -208,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn studies_stand_by_what_they_ask_and_norms_and_references_once() {
+    fn studies_stand_by_what_they_ask() {
         let text = |name: &str| {
             let scene = if name.starts_with("mesh") { "layered" } else { "terzaghi" };
             format!(
@@ -218,13 +192,6 @@ mod tests {
         };
         let mut all: Vec<(Study, _)> =
             ["zeta", "race-a", "mesh-a", "race-b", "mesh-b"].map(|name| solved(name, &text(name))).into();
-        // The largest of each, wherever they stand.
-        for ((_, records), (terms, tail)) in
-            all.iter_mut().zip([(3, 1e-9), (9, 1e-12), (5, 1e-8), (1, 0.0), (2, 0.0)])
-        {
-            (records[0].references[0].terms, records[0].references[0].tail_bound) = (terms, tail);
-            records[0].references.truncate(1);
-        }
         all[0].1[0].provenance.version = "0.0.1".to_owned();
         let results: Vec<StudyResults<'_>> =
             all.iter().map(|(study, records)| StudyResults::new(study, records, Tier::Full)).collect();
@@ -246,10 +213,5 @@ mod tests {
             "that of the first record: {}",
             page.footer
         );
-        let Block::Table(references) = &page.sections[2].blocks[1] else { panic!("norms, then references") };
-        let row = |name: &str, terms: u64, tail: f64| {
-            vec![Cell::Code(name.to_owned()), Cell::Count(terms), Cell::Error(tail)]
-        };
-        assert_eq!(references.rows, [row("layered", 5, 1e-8), row("terzaghi", 9, 1e-9)]);
     }
 }

@@ -1,9 +1,10 @@
 //! Tables of one record.
 
-use crate::case::quantity::{Norm, Quantity, Sample};
+use crate::case::quantity::{Norm, Quantity};
 use crate::measure::record_checks::worst_of;
 use crate::measure::soundness;
 use crate::questions::checks::{bound_cell, groups_of};
+use crate::questions::series::MEASURED;
 use crate::record::Record;
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
@@ -32,9 +33,10 @@ pub fn errors_table(record: &Record) -> Table {
     let mut rows = Vec::new();
     for reference in &record.references {
         let is_footing = case.scene.measures(Quantity::LoadFactor);
-        for (quantity, sample, norm) in
-            MEASURES.into_iter().filter(|one| (one.0 == Quantity::LoadFactor) == is_footing)
+        for (quantity, sample) in
+            MEASURED.into_iter().filter(|one| (one.0 == Quantity::LoadFactor) == is_footing)
         {
+            let norm = quantity.first_norm();
             let errors = case.time_factors.iter().map(|factor| {
                 match record.error(quantity, sample, norm, &reference.name, *factor) {
                     Some(row) if norm == Norm::Relative => Cell::Percent(row.value),
@@ -58,15 +60,6 @@ pub fn errors_table(record: &Record) -> Table {
         .note(work_note(record))
         .notes(case.idle_choices().into_iter().map(str::to_owned))
 }
-
-const MEASURES: [(Quantity, Sample, Norm); 6] = [
-    (Quantity::Pressure, Sample::Points, Norm::L2),
-    (Quantity::Pressure, Sample::Centres, Norm::L2),
-    (Quantity::EffectiveStress, Sample::Points, Norm::L2),
-    (Quantity::Displacement, Sample::Nodes, Norm::L2),
-    (Quantity::Settlement, Sample::Surface, Norm::Relative),
-    (Quantity::LoadFactor, Sample::Surface, Norm::Relative),
-];
 
 /// Why a relative error has no value.
 pub(crate) const NOT_RESOLVED: &str = "the exact value is zero, is negligible against its initial value or \

@@ -1,10 +1,8 @@
-//! `score`, `explain`, `merge`, `schema`, `completions` and `run --case` through the
-//! program, and the list of faults that `check` is held against.
+//! `score`, `explain`, `merge`, `schema`, `completions` and `run --case` through the program.
 
 use crate::packs::{change_records, members, only_pack, tampered};
 use crate::program::{assert_snapshot, assert_words, call, folder_with, table_without_times};
 use oedometer::Record;
-use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::fs;
 use std::path::PathBuf;
@@ -292,50 +290,4 @@ fn help_reads_as_a_terminal_shows_it() {
         assert!(!told.out.contains('`'), "{command}: {}", told.out);
     }
     assert!(call(folder.path(), &["check", "--help"]).out.contains("$GITHUB_STEP_SUMMARY"));
-}
-
-/// Every planted fault names a function that is there, and a study or a test that catches it.
-#[test]
-fn planted_faults_name_functions_and_tests_that_exist() {
-    let text = fs::read_to_string(root().join("tests/faults/faults.toml")).expect("the list");
-    let list: toml::Table = toml::from_str(&text).expect("TOML");
-    let faults = list["fault"].as_array().expect("faults");
-    let sources = rust_sources();
-    for fault in faults {
-        let word = |key: &str| fault[key].as_str().expect(key);
-        let (name, file) = (word("name"), word("file"));
-        let function = word("function").rsplit(':').next().expect("a name");
-        let source = fs::read_to_string(root().join(file)).expect(file);
-        assert!(source.contains(&format!("fn {function}")), "{name}: {file} has no function {function}");
-        let effects = ["result", "before", "instead"].into_iter().filter(|key| fault.get(*key).is_some());
-        assert_eq!(effects.count(), 1, "{name}: one effect");
-        if let Some(right) = fault.get("instead").and_then(|pair| pair[0].as_str()) {
-            assert!(source.contains(right), "{name}: {file} has no `{right}`");
-        }
-        if let Some(study) = word("caught_by").strip_prefix("check ") {
-            let is_there = root().join(format!("studies/{study}.toml")).is_file();
-            assert!(is_there, "{name}: no study {study}");
-        } else {
-            let test = format!("fn {}(", word("caught_by"));
-            assert!(sources.contains(&test), "{name}: no test is called {}", word("caught_by"));
-        }
-    }
-    let names: BTreeSet<&str> = faults.iter().filter_map(|fault| fault["name"].as_str()).collect();
-    assert_eq!(names.len(), faults.len(), "two faults have one name");
-}
-
-/// The text of all Rust files of the program and its tests.
-fn rust_sources() -> String {
-    let mut folders = vec![root().join("src"), root().join("crates"), root().join("tests")];
-    let mut text = String::new();
-    while let Some(folder) = folders.pop() {
-        for path in fs::read_dir(folder).expect("a folder").filter_map(Result::ok).map(|entry| entry.path()) {
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "rs") {
-                text += &fs::read_to_string(path).expect("a source");
-            }
-        }
-    }
-    text
 }

@@ -1,9 +1,10 @@
-//! What README, the manual and CONTRIBUTING name exists: links, options, studies, places in the code; README's first table and
-//! its study are what the program prints and writes. `manual.rs` runs what they show.
+//! What README, the manual, CONTRIBUTING and the list of planted faults name exists: links, options, studies, places in the
+//! code; README's first table and its study are what the program prints and writes. `manual.rs` runs what they show.
 #![cfg(unix)]
 
 use crate::manual::pages::{blocks, documents, is_equal, root, text_of, tokens};
 use crate::program::call;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -342,4 +343,35 @@ fn the_study_from_rust_is_that_of_the_readme() {
         .take_while(|line| !line.starts_with("//! \"#"))
         .map(|line| line.trim_start_matches("//!").trim_start());
     assert_eq!(plain(&mut { shown }), plain(&mut study.iter().map(String::as_str)));
+}
+
+/// Every planted fault names a function that is there, and a study or a test that catches it.
+#[test]
+fn planted_faults_name_functions_and_tests_that_exist() {
+    let text = fs::read_to_string(root().join("tests/faults/faults.toml")).expect("the list");
+    let list: toml::Table = toml::from_str(&text).expect("TOML");
+    let faults = list["fault"].as_array().expect("faults");
+    let sources: String =
+        ["src", "crates", "tests"].iter().map(|folder| sources(&root().join(folder))).collect();
+    for fault in faults {
+        let word = |key: &str| fault[key].as_str().expect(key);
+        let (name, file) = (word("name"), word("file"));
+        let function = word("function").rsplit(':').next().expect("a name");
+        let source = fs::read_to_string(root().join(file)).expect(file);
+        assert!(source.contains(&format!("fn {function}")), "{name}: {file} has no function {function}");
+        let effects = ["result", "before", "instead"].into_iter().filter(|key| fault.get(*key).is_some());
+        assert_eq!(effects.count(), 1, "{name}: one effect");
+        if let Some(right) = fault.get("instead").and_then(|pair| pair[0].as_str()) {
+            assert!(source.contains(right), "{name}: {file} has no `{right}`");
+        }
+        if let Some(study) = word("caught_by").strip_prefix("check ") {
+            let is_there = root().join(format!("studies/{study}.toml")).is_file();
+            assert!(is_there, "{name}: no study {study}");
+        } else {
+            let test = format!("fn {}(", word("caught_by"));
+            assert!(sources.contains(&test), "{name}: no test is called {}", word("caught_by"));
+        }
+    }
+    let names: BTreeSet<&str> = faults.iter().filter_map(|fault| fault["name"].as_str()).collect();
+    assert_eq!(names.len(), faults.len(), "two faults have one name");
 }

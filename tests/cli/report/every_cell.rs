@@ -40,17 +40,14 @@ points_per_cell = [3]
 const HEIGHT: f64 = 2.5;
 const LAST: f64 = 0.3;
 
-const STEPS: &str = r#"title = "Steps"
+/// Another study, so that there is a front page.
+const OTHER: &str = r#"title = "Other"
 scene = "terzaghi"
-task = "stability"
-column = { height = 2.5, load = 40.0 }
-
-[output]
-time_factors = [1.0e-3]
+output.time_factors = [0.1]
 
 [[sweep]]
-method = ["MPM", "GC-SRI-patch"]
-hydraulic_conductivity = [1.0e-3, 3.0e-2]
+method = ["MPM"]
+integrator = ["implicit"]
 cells = [3]
 "#;
 
@@ -114,42 +111,21 @@ fn distinct_records() -> Vec<Record> {
                 *value = 1e-10 * numbers.next();
             }
         }
-        for reference in &mut record.references {
-            reference.terms = (100.0 * numbers.next()) as usize;
-            reference.tail_bound = 1e-20 * numbers.next();
-        }
     }
     records
 }
 
-/// Records of critical steps with numbers of their own.
-fn step_records() -> Vec<Record> {
-    let mut records = records_of("steps", STEPS);
-    let mut numbers = Distinct(500.0);
-    for (place, record) in records.iter_mut().enumerate() {
-        let steps = record.stability.as_mut().expect("a critical step");
-        steps.predicted = 1e-4 * numbers.next();
-        steps.observed = Some(1e-4 * numbers.next());
-        // Far enough apart for a figure.
-        steps.wave_limit = (3e-4 + 1e-5 * place as f64) * numbers.next();
-        steps.drag_limit = 7e-4 * numbers.next();
-        steps.combined_limit = 9e-4 * numbers.next();
-    }
-    records
-}
-
-/// A report of both, made once, and the records that it is made of.
+/// A report of both, made once, and the records of the first.
 struct Reported {
     folder: TempDir,
     records: Vec<Record>,
-    steps: Vec<Record>,
 }
 
 static REPORTED: LazyLock<Reported> = LazyLock::new(|| {
     let folder = TempDir::new().expect("a folder");
     let at = folder.path();
-    let (records, steps) = (distinct_records(), step_records());
-    for (name, text, records) in [("distinct", STUDY, &records), ("steps", STEPS, &steps)] {
+    let (records, others) = (distinct_records(), records_of("other", OTHER));
+    for (name, text, records) in [("distinct", STUDY, &records), ("other", OTHER, &others)] {
         fs::write(at.join(format!("{name}.toml")), text).expect("a file");
         let store = RecordStore::new(&at.join("res"), name);
         for record in records {
@@ -161,7 +137,7 @@ static REPORTED: LazyLock<Reported> = LazyLock::new(|| {
         &[
             "report",
             "distinct.toml",
-            "steps.toml",
+            "other.toml",
             "--from-records",
             "--records",
             "res",
@@ -172,7 +148,7 @@ static REPORTED: LazyLock<Reported> = LazyLock::new(|| {
         ],
     );
     assert_eq!(told.code, 0, "{}", told.err);
-    Reported { folder, records, steps }
+    Reported { folder, records }
 });
 
 impl Reported {
@@ -223,12 +199,6 @@ fn table(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
     let fields = |row: &csv::StringRecord| row.iter().map(str::to_owned).collect::<Vec<_>>();
     let header = fields(reader.headers().expect("a header"));
     (header, reader.records().map(|row| fields(&row.expect("a row"))).collect())
-}
-
-/// Tables of a page in their order.
-fn tables(reported: &Reported, page: &str) -> Vec<(Vec<String>, Vec<Vec<String>>)> {
-    let path = |number: usize| reported.path(&format!("studies/tables/{page}-table-{number}.csv"));
-    (1..1000).map(path).take_while(|path| path.exists()).map(|path| table(&path)).collect()
 }
 
 fn number(text: &str) -> f64 {
@@ -298,7 +268,7 @@ fn figures_over_the_mesh_have_the_points_of_their_cases() {
 }
 
 #[test]
-fn checks_and_references_are_the_worst_of_all_runs() {
+fn checks_are_the_worst_of_all_runs() {
     let reported = &*REPORTED;
     let (_, rows) = table(&reported.path("studies/tables/distinct-checks.csv"));
     let worst = |value: &dyn Fn(&Record) -> Vec<f64>| {
@@ -344,48 +314,6 @@ fn checks_and_references_are_the_worst_of_all_runs() {
         seen += 1;
     }
     assert_eq!(seen, 12);
-    let mut seen = 0;
-    for (header, rows) in tables(reported, "studies").iter().filter(|table| table.0[0] == "reference") {
-        assert_eq!(header[1..], ["terms at most", "tail bound, over the load"]);
-        for row in rows {
-            let of = |value: &dyn Fn(&oedometer::Record) -> Vec<f64>| worst(value);
-            let uses = |record: &Record| {
-                let meant = record.references.iter().filter(|used| used.name == row[0]);
-                meant.map(|used| (used.terms as f64, used.tail_bound)).collect::<Vec<_>>()
-            };
-            let terms = of(&|record| uses(record).iter().map(|used| used.0).collect());
-            let tail = of(&|record| uses(record).iter().map(|used| used.1).collect());
-            assert_near(number(&row[1]), terms, 1e-12, &row[0]);
-            assert_near(number(&row[2]), tail, 1e-12, &row[0]);
-            seen += 1;
-        }
-    }
-    assert_eq!(seen, 2);
-}
-
-#[test]
-fn critical_steps_stand_beside_their_cases() {
-    let reported = &*REPORTED;
-    let (header, rows) = table(&reported.path("studies/tables/steps-critical-steps.csv"));
-    assert_eq!(header[1..5], ["predicted (s)", "observed (s)", "difference", "over h/c"]);
-    assert_eq!(rows.len(), reported.steps.len());
-    let of = |method: &str, conductivity: f64| {
-        let mut meant = reported.steps.iter().filter(|record| {
-            record.case.method.to_string() == method
-                && record.case.material.hydraulic_conductivity == conductivity
-        });
-        meant.next().and_then(|record| record.stability.as_ref()).expect("a critical step")
-    };
-    for row in &rows {
-        let (method, rest) = row[0].split_once(' ').expect("a method");
-        let conductivity = number(rest.rsplit_once("k = ").expect("a conductivity").1.trim_end_matches(')'));
-        let steps = of(method, conductivity);
-        let observed = steps.observed.expect("observed");
-        assert_near(number(&row[1]), steps.predicted, 1e-12, "predicted");
-        assert_near(number(&row[2]), observed, 1e-12, "observed");
-        assert_near(1.0 + number(&row[3]), observed / steps.predicted, 1e-12, "difference");
-        assert_near(number(&row[4]), steps.predicted / steps.wave_limit, 1e-12, "over h/c");
-    }
 }
 
 #[test]

@@ -150,26 +150,6 @@ fn the_race_has_a_cell_for_every_contender_in_every_situation_and_says_why_one_c
 }
 
 #[test]
-fn the_audit_shows_several_times_and_meshes_and_names_what_the_paper_prints() {
-    let page = page_of(&[&PAIRED]);
-    let audit = page.sections.iter().find(|section| section.id == "audit").expect("answered");
-    let [Block::Paragraph(sentence), Block::Table(table), Block::Figures(figures)] = audit.blocks.as_slice()
-    else {
-        panic!("{audit:?}")
-    };
-    assert!(
-        sentence.contains("1 of 4 pairings") && sentence.contains("`log-linear, conservative`"),
-        "{sentence}"
-    );
-    assert_eq!(table.rows.len(), 4, "a row a pairing");
-    assert_eq!(figures.len(), 2);
-    for (figure, points) in figures.iter().zip([2, 3]) {
-        let csv = figure.chart.data_csv();
-        assert_eq!(csv.lines().count(), 1 + 4 * points, "four pairings at every time, on every mesh: {csv}");
-    }
-}
-
-#[test]
 fn the_first_page_is_short_and_free_of_riddles() {
     let page = page_of(&[&MANY, &PAIRED]);
     let html = render_html(&page).expect("a page");
