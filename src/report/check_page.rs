@@ -3,7 +3,7 @@
 
 use crate::campaign::taken_over::TakenOver;
 use crate::golden::GoldenError;
-use crate::golden::compare::{Change, Difference};
+use crate::golden::compare::{CaseChange, Change, Difference};
 use crate::judge::proposals::{ROOM_OF_ERROR, ROOM_OF_ORDER};
 use crate::judge::study_check::{CheckEnd, Objection, StudyCheck};
 use crate::judge::verdict::{Judgement, VerdictOutcome};
@@ -15,7 +15,7 @@ use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
 use crate::report::failures::failures_of;
 use crate::report::sections;
-use crate::report::tables::golden_changes::summary;
+use crate::report::tables::golden_changes::{judgement_of, summary};
 use oedometer_soil::wording::count_of;
 use std::fmt::Write as _;
 
@@ -137,7 +137,7 @@ fn before(check: &StudyCheck, is_whole: bool) -> Vec<Block> {
     let failed = check.objections().iter().map(objection).collect();
     let inputs: Vec<String> = check.told_inputs().into_iter().collect();
     let groups = check.groups.iter().map(|group| format!("golden values: {}", summary(group))).collect();
-    let differences = worth_naming(check.differences());
+    let (differences, cases) = worth_naming(check.differences(), &check.changes);
     let lists = [
         list(diagnoses, is_whole),
         list(TakenOver::sentences(&check.taken_over), is_whole),
@@ -145,6 +145,7 @@ fn before(check: &StudyCheck, is_whole: bool) -> Vec<Block> {
         list(inputs, is_whole),
         list(groups, is_whole),
         list(differences.into_iter().map(difference).collect(), false),
+        list(cases.into_iter().map(case_change).collect(), false),
     ];
     lists.into_iter().flatten().collect()
 }
@@ -331,12 +332,18 @@ pub fn judgements_table(title: &str, judgements: &[&Judgement]) -> Table {
     Table::of(title, columns("verdict | series | class | reason"), rows)
 }
 
-/// Values that are named one by one. Many without a partner come from an input that changed, which their kind has told already:
-/// then only what moved is named.
-fn worth_naming(differences: &[Difference]) -> Vec<&Difference> {
+/// Values and cases that are named one by one. Many values without a partner come from an input that changed, which
+/// their kind has told already: then only what moved is named.
+fn worth_naming<'a>(
+    differences: &'a [Difference],
+    cases: &'a [CaseChange],
+) -> (Vec<&'a Difference>, Vec<&'a CaseChange>) {
     let has_partner = |one: &&Difference| one.golden.is_some() && one.found.is_some();
-    let moved: Vec<&Difference> = differences.iter().filter(has_partner).collect();
-    if differences.len() <= MOST + moved.len() { differences.iter().collect() } else { moved }
+    if differences.len() <= MOST + differences.iter().filter(has_partner).count() {
+        return (differences.iter().collect(), cases.iter().collect());
+    }
+    let moved = cases.iter().filter(|case| case.worse + case.better > 0).collect();
+    (differences.iter().filter(has_partner).collect(), moved)
 }
 
 fn difference(one: &Difference) -> String {
@@ -357,13 +364,27 @@ fn difference(one: &Difference) -> String {
     format!("{}: {}: {how}", one.key, one.change.name())
 }
 
+fn case_change(one: &CaseChange) -> String {
+    let (mood, word) = judgement_of(one);
+    let counts = format!(
+        "{word}: {} times the golden cost, {}, {} fell, {} on one side only",
+        number::number(one.cost_ratio),
+        count_of(one.worse, "error rose", "errors rose"),
+        one.better,
+        one.unpaired
+    );
+    format!("{} {}: {counts}", mood.mark(), one.case)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::golden::compare::Change;
     use crate::golden::measure::key;
     use crate::judge::study_check::CaseNote;
     use crate::render::table::columns;
     use crate::report::failures::tests::{check, group};
+    use oedometer_convergence::ParetoChange;
 
     #[test]
     fn values_of_an_input_that_changed_are_told_by_their_kind_and_hide_nothing_that_moved() {
@@ -374,14 +395,24 @@ mod tests {
             found,
             tolerance: 1e-9,
         };
+        let case = |worse: usize| CaseChange {
+            case: "MPM".to_owned(),
+            change: ParetoChange::NotComparable,
+            cost_ratio: 1.0,
+            worse,
+            better: 0,
+            unpaired: 1,
+        };
         let named = |missing: usize| {
             let mut differences = vec![difference(Some(1.0), None); missing];
             differences.insert(missing / 2, difference(Some(1.0), Some(2.0)));
-            let values = worth_naming(&differences);
+            let cases = [case(0), case(1)];
+            let (values, cases) = worth_naming(&differences, &cases);
             assert!(values.contains(&&differences[missing / 2]), "what moved is always named");
-            values.len()
+            (values.len(), cases.len())
         };
-        assert_eq!([named(MOST), named(MOST + 1)], [MOST + 1, 1]);
+        assert_eq!(named(MOST), (MOST + 1, 2));
+        assert_eq!(named(MOST + 1), (1, 1));
     }
 
     #[test]
