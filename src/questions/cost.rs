@@ -86,7 +86,7 @@ fn answer(study: &str, precision: &WorkPrecision<'_>) -> Option<Finding> {
 /// What the figure shows: who needs the least work for each tolerance.
 fn title_of(precision: &WorkPrecision<'_>) -> String {
     let runs = precision.cheapest.iter().filter_map(|one| Some((one.tolerance, one.run.as_ref()?)));
-    let least = runs.map(|(tolerance, run)| (run.record.case.method.to_string(), number::percent(tolerance)));
+    let least = runs.map(|(tolerance, run)| (run.record.case.method.to_string(), number::bound(tolerance)));
     let groups = crate::case::grouping::grouped(least, |(method, _)| method.clone()).into_iter();
     let told = groups.map(|(method, within)| {
         let within: Vec<String> = within.into_iter().map(|(_, tolerance)| tolerance).collect();
@@ -145,7 +145,7 @@ fn table(precision: &WorkPrecision<'_>) -> Table {
     let header =
         "> tolerance | run | > error | > work [ms] | > steps | > point updates | finer mesh within it";
     Table::of("The cheapest run within a tolerance", columns(header), rows).file("cost").note(format!(
-        "error of the pore pressure at the points, relative L2, the worst of the outputs; work: {COUNTED_WORK}"
+        "error of the pore pressure at the points, relative L_2, the worst of the outputs; work: {COUNTED_WORK}"
     ))
 }
 
@@ -192,7 +192,7 @@ mod tests {
         assert_eq!(table.rows[0], expected);
         assert!(matches!(table.rows[1][1..], [Cell::Missing(_), ..]), "{:?}", table.rows[1]);
         let chart = chart(&precision);
-        assert_eq!(chart.title, "Least work: GIMP to 1.00 %");
+        assert_eq!(chart.title, "Least work: GIMP to 1 %");
         let series =
             |place: usize| (chart.series[place].name.as_str(), chart.series[place].points.as_slice());
         assert_eq!(series(0), ("GIMP, implicit", &[(0.011, 0.0071)][..]));

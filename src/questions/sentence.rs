@@ -17,7 +17,7 @@ fn environment() -> Environment<'static> {
     environment.add_filter("amount", |value: f64, unit: String| number::with_unit(value, &unit));
     environment.add_filter("amounts", |all: Serde<Vec<Amount>>| amounts(&all.0));
     environment.add_filter("layers", |all: Serde<Vec<Layer>>| layers(&all.0));
-    environment.add_filter("bound", |bound: f64| format!("{} %", number::number(100.0 * bound)));
+    environment.add_filter("bound", number::bound);
     environment.add_filter("quantity", |quantity: Serde<Quantity>| words::quantity(quantity.0));
     environment.add_filter("order_or", |order: Option<f64>, class: Option<Serde<Class>>| match class {
         Some(class) => words::order_with_class(class.0, order),

@@ -101,7 +101,7 @@ fn row_of(record: &Record) -> Option<Vec<Cell>> {
 fn end_of(probe: &Probe) -> &'static str {
     match &probe.failure {
         Some(failure) => failure.kind.name(),
-        None if probe.reaches_end => "ran to the end",
+        None if probe.reaches_end => "to the end",
         None => "ran",
     }
 }
@@ -157,7 +157,7 @@ mod tests {
             predicted_growth: (steps == 9).then_some(1.0625),
         };
         let probes = [probe(7, None), probe(8, None), probe(9, Some(1.125)), probe(10, Some(1.25))];
-        assert_eq!(probes.each_ref().map(end_of), ["ran to the end", "ran", "unstable", "unstable"]);
+        assert_eq!(probes.each_ref().map(end_of), ["to the end", "ran", "unstable", "unstable"]);
         let with = |observed: Option<f64>, unknown: Option<&str>, places: [usize; 2]| {
             let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
                         integrator = ['implicit']\ncells = [2]\n";
@@ -177,7 +177,7 @@ mod tests {
         let found = |observed: Option<f64>, unknown: Option<&str>| with(observed, unknown, [0, 1]);
         let ends =
             |places: [usize; 2]| with(None, None, places)[6..].iter().map(Cell::show).collect::<Vec<_>>();
-        assert_eq!(ends([0, 2])[..4], ["✗ ran to the end", "7", "✓ unstable", "9"].map(str::to_owned));
+        assert_eq!(ends([0, 2])[..4], ["✗ to the end", "7", "✓ unstable", "9"].map(str::to_owned));
         assert_eq!(ends([0, 2])[4..], ["1.1250", "1.0625"]);
         assert_eq!(ends([0, 3])[4..], ["1.2500", "–"]);
         assert_eq!(ends([0, 1])[4..], ["–", "–"]);

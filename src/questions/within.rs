@@ -164,13 +164,14 @@ fn row(
         integrator => integrator.into(),
     };
     let step = match choice.largest_step {
-        step if step <= 0.0 => Cell::missing("another program's"),
+        step if step <= 0.0 && choice.integrator.is_empty() => Cell::missing("another program's"),
+        step if step <= 0.0 => Cell::missing("no step was needed"),
         step if choice.is_longest_tried => format!("≥ {}", step_words(step)).into(),
         step => step_words(step).into(),
     };
     let mut row = vec![
         words::quantity(asked.quantity).into(),
-        Cell::Text(format!("{} %", number::number(100.0 * bound))),
+        Cell::Text(number::bound(bound)),
         match (is_within, choice.is_confirmed) {
             (false, _) => Cell::Verdict(Mood::Fail, method),
             (true, false) => Cell::Verdict(Mood::Note, method),

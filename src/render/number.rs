@@ -70,6 +70,11 @@ pub fn percent(share: f64) -> String {
     })
 }
 
+/// A share that someone set, as a percentage without more digits than it has: `0.001` is `0.1 %`.
+pub fn bound(share: f64) -> String {
+    format!("{} %", number(100.0 * share))
+}
+
 /// A share as a whole percentage: `0.847` is `85 %`.
 pub fn rounded_percent(share: f64) -> String {
     finite(100.0 * share, |v| format!("{v:.0} %"))

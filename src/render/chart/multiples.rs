@@ -11,9 +11,6 @@ use std::fmt::Write;
 /// Most series of a panel besides theory: as many as there are colours that a colour-blind reader tells apart.
 const MOST_SERIES: usize = 7;
 
-/// Most letters of the methods in the title of a panel.
-const LONGEST_NAMES: usize = 60;
-
 /// Width of a panel, px: two stand side by side.
 const PANEL_WIDTH: f64 = 450.0;
 
@@ -60,13 +57,7 @@ impl Chart {
         let mut panel = self.clone();
         panel.triangles.retain(|triangle| is_shown(&triangle.beside));
         panel.series = series;
-        let methods = grouped(shown.iter().copied(), |name| method_of(name));
-        let methods = methods.iter().map(|(method, _)| *method).collect::<Vec<_>>().join(", ");
-        panel.title = if methods.chars().count() <= LONGEST_NAMES {
-            format!("{}: {methods}", self.title)
-        } else {
-            format!("{}, {number} of {of}", self.title)
-        };
+        panel.title = format!("{}, {number} of {of}", self.title);
         panel.x = panel.x.between(x.low, x.high);
         panel.y = panel.y.between(y.low, y.high);
         panel.size.width = PANEL_WIDTH;
@@ -164,7 +155,7 @@ mod tests {
         assert_eq!(places, ["x=\"0\" y=\"0\" wid", "x=\"4500\" y=\"0\" ", "x=\"0\" y=\"3200\" "]);
         assert_eq!(side_by_side(&[part(300.0, "a")], SIDE_BY_SIDE).0, (450.0, 300.0));
         let svg = whole.svg().expect("it is drawn");
-        assert_eq!(svg.matches("E: method").count(), 3);
+        assert_eq!(svg.matches(" of 3</text>").count(), 3);
         assert!(svg.contains("<title>method 0</title>") && svg.contains("<title>method 14</title>"));
     }
 
@@ -178,7 +169,7 @@ mod tests {
         assert_eq!(panels.iter().map(Vec::len).collect::<Vec<_>>(), [7, 2]);
         let mut whole = chart(0);
         whole.series.extend(many.iter().map(|name| Series::new(*name, vec![(0.1, 1.0)])));
-        assert_eq!(whole.panels()[0].title, "E: A");
+        assert_eq!(whole.panels()[0].title, "E, 1 of 2");
         for (place, series) in whole.series.iter_mut().enumerate() {
             series.slot = Some(place % 3);
         }

@@ -256,7 +256,7 @@ impl Cell {
             Self::Order(v) => number::order(*v),
             Self::Count(n) => number::count(*n),
             Self::Percent(v) => number::percent(*v),
-            Self::Bound(v) => format!("{} %", number::number(100.0 * v)),
+            Self::Bound(v) => number::bound(*v),
             Self::Seconds(v) => number::seconds(*v),
             Self::Number(v) => number::number(*v),
             Self::Measured(v) => number::significant(*v, 3),
