@@ -438,7 +438,7 @@ pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
             format!(
                 "Farther right: dearer; equal marks are stacked. *Budget*: the error still fell on the finest mesh allowed, of {column} s \
                  of work ({plane} s in the plane); *plateau*: it no longer fell; *locks*: too little settlement; *inaccurate*: large \
-                 errors that do not fall, or a run that ends early. Work: {COUNTED_WORK}. Cells: over the height. Step: of the elapsed \
+                 errors that do not fall, or a run that ends early. Work: {COUNTED_WORK}. Cells: over the height, or under the footing. Step: of the elapsed \
                  time t or of the critical step t_c."
             )
         }
@@ -451,7 +451,7 @@ pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
 fn plotted_row(situation: &Situation, methods: &[&str], terms: &Terms) -> ChartRow {
     let without = methods.iter().map(|method| {
         let reason = entry_of(situation, method).map(|entry| situation.reason(entry, terms));
-        reason.unwrap_or(Some(Reason::NotRun)).map_or("", Reason::word).replace("not applicable", "excluded")
+        reason.unwrap_or(Some(Reason::NotRun)).map_or("", Reason::word).replace("not applicable", "n/a")
     });
     let best = cheapest(situation, terms, |_| true);
     let arrival = best.and_then(|(entry, cost)| Some((entry, cost, situation.arrival(entry, terms)?)));
