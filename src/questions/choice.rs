@@ -438,11 +438,18 @@ pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
             format!(
                 "Farther right: dearer; equal marks are stacked. *Budget*: the error still fell on the finest mesh allowed, of {column} s \
                  of work ({plane} s in the plane); *plateau*: it no longer fell; *locks*: too little settlement; *inaccurate*: large \
-                 errors that do not fall, or a run that ends early. Work: {COUNTED_WORK}. Cells: over the height, or under the footing. Step: of the elapsed \
-                 time t or of the critical step t_c."
+                 errors that do not fall, or a run that ends early. Work: {COUNTED_WORK}. Cells: over the height, or under the \
+                 footing. Step: of the elapsed time t or of the critical step t_c."
             )
         }
-        ReadOut::Centres => "Marks and words as where fields are sampled at the points.".to_owned(),
+        ReadOut::Centres => {
+            let leads = leader(race, read_out).map_or(String::new(), |one| {
+                let first = if one.as_often > 1 { ", the first" } else { "" };
+                let dearest = number::short(one.dearest);
+                format!("Most often within 1 %: {}{first} at up to {dearest} times the least work. ", one.who)
+            });
+            format!("{leads}Marks and words as where fields are sampled at the points.")
+        }
     };
     Figure::new(format!("race-problems-{}", read_out.name()), chart, caption)
 }
