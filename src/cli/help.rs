@@ -56,7 +56,10 @@ const GROUPS: [Group; 5] = [
     (
         "Over time",
         &[
-            ("compare", ["compare HEAD~1 HEAD", "compare out-before out-after gate"]),
+            (
+                "compare",
+                ["compare HEAD~1 HEAD", "compare --commands './a {case} {out}' './b {case} {out}' gate.toml"],
+            ),
             ("history", ["history", "history terzaghi-mesh --format csv"]),
             (
                 "bisect",
@@ -78,13 +81,21 @@ const GROUPS: [Group; 5] = [
     ),
 ];
 
-/// Options for many cases, other builds and the development of methods.
-const EXPERT: [&str; 11] = [
+/// Options for clusters, other builds and the development of methods.
+const EXPERT: [&str; 19] = [
     "shard",
     "balance",
     "resume",
     "compress",
+    "engine",
     "tasks",
+    "partition",
+    "time",
+    "cores",
+    "sbatch",
+    "attempts",
+    "detach",
+    "dry_run",
     "case_files",
     "annotate",
     "summary",

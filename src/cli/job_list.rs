@@ -28,13 +28,19 @@ pub struct JobList {
     pub tasks: u64,
     /// How they are divided.
     pub parting: Parting,
+    /// Whether the studies may start their solvers.
+    pub allow_solvers: bool,
     /// Whether results are kept that nothing proves to be of the present program.
     pub keep_unproven: bool,
 }
 
 impl JobList {
     /// The shares that have one of the wanted cases, from 1 on; the shares are those of all cases.
-    fn shares_with(&self, all: &[(&Study, Vec<&Case>)], wanted: &[(&Study, Vec<&Case>)]) -> BTreeSet<u64> {
+    pub fn shares_with(
+        &self,
+        all: &[(&Study, Vec<&Case>)],
+        wanted: &[(&Study, Vec<&Case>)],
+    ) -> BTreeSet<u64> {
         let cases: Vec<&Case> = all.iter().flat_map(|(_, cases)| cases).copied().collect();
         let shares = shares_of(&cases, self.tasks, self.parting);
         // Both lists have the order of the studies: the wanted ones are met on the way.
@@ -46,12 +52,12 @@ impl JobList {
     /// The commands of those shares, a line each.
     pub fn commands(&self, all: &[(&Study, Vec<&Case>)], wanted: &[(&Study, Vec<&Case>)]) -> String {
         let shares = self.shares_with(all, wanted);
-        shares.iter().map(|share| self.command(*share) + "\n").collect()
+        shares.iter().map(|share| self.command("oedometer", &share.to_string()) + "\n").collect()
     }
 
-    /// The command of a share.
-    fn command(&self, share: u64) -> String {
-        let mut words = vec!["oedometer".to_owned(), "run".to_owned()];
+    /// The command of a share, which may be the variable of a scheduler.
+    pub fn command(&self, program: &str, share: &str) -> String {
+        let mut words = vec![quoted(program), "run".to_owned()];
         words.extend(self.files.iter().map(|file| quoted_path(file)));
         words.extend(["--out".to_owned(), quoted_path(&self.results)]);
         if self.tier != Tier::Full {
@@ -60,6 +66,9 @@ impl JobList {
         words.extend(["--shard".to_owned(), format!("{share}/{}", self.tasks)]);
         if self.parting == Parting::Cost {
             words.push("--balance".to_owned());
+        }
+        if self.allow_solvers {
+            words.push("--allow-solvers".to_owned());
         }
         words.push("--resume".to_owned());
         if self.keep_unproven {
@@ -111,7 +120,7 @@ fn quoted_path(path: &Path) -> String {
 }
 
 /// A word as a shell takes it.
-fn quoted(word: &str) -> String {
+pub fn quoted(word: &str) -> String {
     let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./=+:,@%".contains(letter);
     if !word.is_empty() && word.chars().all(is_plain) {
         word.to_owned()
@@ -132,22 +141,24 @@ mod tests {
             tier: Tier::Ci,
             tasks: 8,
             parting: Parting::Cost,
+            allow_solvers: false,
             keep_unproven: false,
         };
         assert_eq!(
-            list.command(3),
+            list.command("oedometer", "3"),
             r"oedometer run 'my study.toml' b.toml --out 'o'\''ut' --tier ci --shard 3/8 --balance --resume"
         );
         let list = JobList {
             results: "out".into(),
             tier: Tier::Full,
             parting: Parting::Hash,
+            allow_solvers: true,
             keep_unproven: true,
             ..list
         };
         assert_eq!(
-            list.command(7),
-            "oedometer run 'my study.toml' b.toml --out out --shard 7/8 --resume --keep-unproven"
+            list.command("/a b/oedometer", "$TASK"),
+            "'/a b/oedometer' run 'my study.toml' b.toml --out out --shard $TASK/8 --allow-solvers --resume --keep-unproven"
         );
     }
 
@@ -191,6 +202,7 @@ mod tests {
             tier: Tier::Full,
             tasks: 3,
             parting: Parting::Hash,
+            allow_solvers: false,
             keep_unproven: false,
         };
         let all = [(&study, records.iter().map(|record| &record.case).collect::<Vec<_>>())];

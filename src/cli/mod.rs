@@ -10,6 +10,7 @@ pub mod output;
 pub mod place;
 pub mod progress;
 pub mod running;
+pub mod slurm;
 pub mod study_files;
 pub mod trust;
 use crate::cli::commands::{

@@ -1,11 +1,15 @@
-//! One state of studies: their values, and the inputs that they belong to, from records or golden files.
+//! One state of studies: their values, and the inputs that they belong to, from records, golden files, or two commands that
+//! are run in turn.
 
+use crate::campaign::runner::{RunOptions, run_study};
 use crate::case::Case;
+use crate::case::planned::Tier;
 use crate::golden::GoldenFile;
+use crate::golden::compare::compare;
 use crate::golden::text_error::GoldenTextError;
 use crate::history::repository::{Commit, GitError, Repository};
 use crate::record::named_cases::NamedCases;
-use crate::record::{Record, RecordStore};
+use crate::record::{Record, RecordStore, Status};
 use crate::study::check::Study;
 use crate::study::file::StudySource;
 use oedometer_soil::wording::count_of;
@@ -193,6 +197,74 @@ pub(crate) fn cases_of_study(path: &str, text: &str) -> Option<BTreeMap<String, 
     Some(study.planned.into_iter().map(|planned| (planned.case.label(), planned.case)).collect())
 }
 
+/// The study with a command in place of that of its one solver, and with the cases of that solver alone. The command is
+/// words with blanks between them and the placeholders of `[[solver]]`.
+///
+/// # Errors
+/// When the study attaches no solver or several, or the command is empty.
+pub(crate) fn with_command(study: &Study, command: &str) -> Result<Study, String> {
+    let mut study = study.clone();
+    let [solver] = study.solvers.as_mut_slice() else {
+        let count = study.solvers.len();
+        return Err(format!(
+            "{} attaches {count} solvers: `--commands` needs a study with one `[[solver]]`",
+            study.name
+        ));
+    };
+    solver.command = command.split_whitespace().map(str::to_owned).collect();
+    if solver.command.is_empty() {
+        return Err(
+            "the command is empty: give a program with its arguments, like `python3 new.py {case} {out}`"
+                .to_owned(),
+        );
+    }
+    // Nothing of a result that is there already, one run a round, and no version of another program.
+    (solver.repeats, solver.warm_up) = (1, false);
+    (solver.files, solver.version, solver.known_by) = (Vec::new(), Vec::new(), None);
+    let method = solver.method();
+    study.planned.retain(|planned| planned.case.method == method);
+    Ok(study)
+}
+
+/// The states of two commands after some rounds: the values are those of the first round, the times those of all. Every
+/// other round begins with the second command, so that a machine that slows down slows both.
+pub(crate) fn states_of_commands(study: &[Study; 2], names: [&str; 2], rounds: usize) -> [State; 2] {
+    let mut states =
+        names.map(|name| State { name: format!("`{name}`"), studies: BTreeMap::new(), notes: Vec::new() });
+    for round in 0..rounds {
+        for side in if round % 2 == 0 { [0, 1] } else { [1, 0] } {
+            let report = run_study(&study[side], &RunOptions::whole(Tier::Full, 1), None, &|_| {});
+            let failed = report.records.iter().filter(|record| record.status != Status::Ok);
+            let failed = failed.map(|record| format!("{}: {}", record.case.label(), record.status.name()));
+            let failures = report.errors.iter().map(ToString::to_string).chain(failed);
+            if round == 0 {
+                let name = states[side].name.clone();
+                states[side].notes.extend(failures.map(|what| format!("{name}: {what}")));
+            }
+            states[side].add_round(&study[side].name, &report.records);
+        }
+    }
+    states
+}
+
+impl State {
+    /// Takes the values of the first round and the times of each.
+    fn add_round(&mut self, study: &str, records: &[Record]) {
+        let state = StudyState::of_records(study, records);
+        let Some(first) = self.studies.get_mut(study) else {
+            self.studies.insert(study.to_owned(), state);
+            return;
+        };
+        let others = compare(&first.golden, &state.golden.values).len();
+        if others > 0 {
+            self.notes.push(format!("{}: {others} values of {study} differ from round to round", self.name));
+        }
+        for (case, seconds) in state.seconds {
+            first.seconds.entry(case).or_default().extend(seconds);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -215,7 +287,44 @@ mod tests {
     }
 
     #[test]
-    fn golden_values_of_a_study_lie_directly_in_their_folder() {
+    fn a_command_stands_for_the_one_solver_of_a_study_once_a_round_and_for_its_cases_alone() {
+        let study = |solvers: &[&str]| {
+            let solver = |name: &&str| {
+                format!(
+                    "[[solver]]\nname = \"{name}\"\ncommand = [\"old\"]\nresult = \"{{out}}/a.csv\"\nrepeats = 3\nwarm_up = true\n\
+                     version = [\"old\", \"--version\"]\n"
+                )
+            };
+            let text = format!(
+                "title = 't'\nscene = 'terzaghi'\n{}[[sweep]]\nmethod = ['MPM', '{}']\nintegrator = ['implicit']\n\
+                 cells = [4]\n",
+                solvers.iter().map(solver).collect::<String>(),
+                solvers.first().unwrap_or(&"GIMP")
+            );
+            Study::check(&StudySource { name: "s.toml".to_owned(), text }).expect("sound")
+        };
+        let mut before = study(&["toy"]);
+        before.solvers[0].files = vec!["a.csv".to_owned()];
+        let found = with_command(&before, " new  {case} {out} ").expect("one solver");
+        let solver = &found.solvers[0];
+        assert_eq!(solver.command, ["new", "{case}", "{out}"]);
+        assert_eq!(
+            (solver.repeats, solver.warm_up, solver.version.len(), solver.is_given()),
+            (1, false, 0, false)
+        );
+        assert!(found.planned.len() == 1 && !found.planned[0].case.has_integrator());
+        let empty =
+            "the command is empty: give a program with its arguments, like `python3 new.py {case} {out}`";
+        let several = |count: usize| {
+            format!("s attaches {count} solvers: `--commands` needs a study with one `[[solver]]`")
+        };
+        for (solvers, command, told) in [
+            (&["toy"][..], " ", empty.to_owned()),
+            (&["toy", "other"], "new", several(2)),
+            (&[], "new", several(0)),
+        ] {
+            assert_eq!(with_command(&study(solvers), command).err(), Some(told));
+        }
         for (path, name) in [("golden/a.csv", Some("a")), ("golden/b/a.csv", None), ("other/a.csv", None)] {
             assert_eq!(golden_name(path, "golden"), name, "{path}");
         }

@@ -1,4 +1,4 @@
-//! A small repository of golden values over its commits, and folders of records.
+//! A small repository of golden values over its commits, folders of records, and commands in turn.
 
 use crate::campaign::runner::{RunOptions, run_study};
 use crate::case::{Case, Tier};
@@ -248,4 +248,31 @@ fn records_that_cannot_be_read_are_counted_and_a_folder_without_any_is_refused()
         store.write(&Record { schema: 999, ..record.clone() }).expect("written");
         read(cases, &[told]);
     }
+}
+
+#[test]
+#[cfg(unix)]
+fn every_other_round_begins_with_the_second_command_and_the_first_tells_what_failed() {
+    use crate::history::state::{states_of_commands, with_command};
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    let rows = "printf 't,y,p,u_y\\n8.175,0,0.9,0\\n8.175,0.5,0.6,-1e-7\\n8.175,1,0,-3e-7\\n' > $2/r.csv";
+    fs::write(at.join("run.sh"), format!("echo $1 >> {}\n{rows}\ntest $1 = a\n", at.join("log").display()))
+        .expect("a file");
+    let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[solver]]\nname = 'own'\n\
+                command = ['false']\nresult = '{out}/r.csv'\n[[sweep]]\nmethod = ['own']\ncells = [2]\n";
+    let source = StudySource { name: at.join("s.toml").display().to_string(), text: text.to_owned() };
+    let study = Study { may_start_solvers: true, ..Study::check(&source).expect("sound") };
+    let studies =
+        ["a", "b"].map(|one| with_command(&study, &format!("sh run.sh {one} {{out}}")).expect("one solver"));
+    let states = states_of_commands(&studies, ["first", "second"], 3);
+    assert_eq!(fs::read_to_string(at.join("log")).expect("a log"), "a\nb\nb\na\na\nb\n");
+    let label = study.planned[0].case.label();
+    assert_eq!(states.each_ref().map(|state| state.name.as_str()), ["`first`", "`second`"]);
+    assert_eq!(states.each_ref().map(|state| state.studies["s"].seconds[&label].len()), [3, 3]);
+    assert_eq!(states[0].notes, [""; 0]);
+    assert_eq!(states[1].notes, [format!("`second`: {label}: failed")]);
+    assert!(
+        !states[0].studies["s"].golden.values.is_empty() && states[1].studies["s"].golden.values.is_empty()
+    );
 }

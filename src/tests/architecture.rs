@@ -46,6 +46,7 @@ fn no_reader_opens_files_by_itself() {
         "study/check/solvers",
         "score",
         "cli/commands/score",
+        "cli/slurm",
     ] {
         readers.extend(sources_below(&root.join(folder)));
     }

@@ -53,7 +53,7 @@ const CONVERGENCE: Order = Order { root: "crates/convergence/src", floors: "*", 
 const HARNESS: Order = Order {
     root: "src",
     floors: "render record measure study campaign golden history score judge race questions report api cli",
-    circles: &["render/chart", "study/check", "campaign", "golden", "score"],
+    circles: &["render/chart", "study/check", "campaign", "golden", "score", "cli/slurm"],
     licensed: &[],
 };
 

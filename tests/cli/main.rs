@@ -49,6 +49,7 @@ mod run {
     mod many_cases;
     mod records;
     mod signals;
+    mod slurm;
     mod store;
     mod trust;
     mod units;

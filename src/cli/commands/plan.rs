@@ -91,6 +91,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             results: results.unwrap_or_else(|| DEFAULT_RESULTS.into()),
             tier,
             tasks,
+            allow_solvers: false,
             keep_unproven: arguments.keep_unproven,
             parting: if arguments.balance { Parting::Cost } else { Parting::Hash },
         };

@@ -8,10 +8,12 @@ use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::say;
 use crate::cli::place::{DEFAULT_RESULTS, StudyArguments};
 use crate::cli::running::{jobs_of, run_and_store};
+use crate::cli::slurm;
 use crate::cli::study_files::load;
 use crate::cli::trust::{self, TrustArguments};
 use crate::record::csv::TableForm;
 use crate::study::check::Study;
+use clap::ValueEnum;
 use std::path::PathBuf;
 
 /// Arguments of `run`.
@@ -47,8 +49,20 @@ pub struct Arguments {
     /// Write compressed tables, STUDY.csv.gz (pandas reads them)
     #[arg(long)]
     compress: bool,
+    /// Run the cases by a scheduler instead of on this machine
+    #[arg(long, value_enum, conflicts_with_all = ["case", "shard", "jobs"])]
+    engine: Option<Engine>,
     #[command(flatten)]
     trust: TrustArguments,
+    #[command(flatten)]
+    cluster: slurm::ClusterArguments,
+}
+
+/// Who runs cases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Engine {
+    /// Submit an array of shards and a merge, and follow both
+    Slurm,
 }
 
 /// Runs and keeps.
@@ -56,6 +70,17 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     // Every file is judged before any work begins.
     let chosen = arguments.studies.chosen()?;
     let mut studies = load(&chosen)?;
+    if arguments.engine == Some(Engine::Slurm) {
+        arguments.trust.mark_all(&mut studies, &chosen)?;
+        return slurm::run(
+            &arguments.cluster,
+            &chosen,
+            &studies,
+            arguments.tier,
+            &arguments.out,
+            arguments.keep_unproven,
+        );
+    }
     if arguments.case.as_ref().is_some_and(|hash| hash.trim().is_empty()) {
         return Err(Ended::usage("`--case` needs a hash or its first digits, as listed by `plan`"));
     }

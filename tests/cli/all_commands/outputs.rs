@@ -180,6 +180,8 @@ const FIRST: &[&str] = &[
     "run s.toml --jobs 1 --resume --shard 2/2 --out half",
     "merge half --out half",
     "plan s.toml --missing half",
+    "run s.toml --engine slurm --tasks 2 --dry-run --partition short --time 01:30:00 --cores 3 --sbatch --mem=2G",
+    "run s.toml --engine slurm --tasks 0 --dry-run",
     "records out/s",
     "report s.toml --from-records --out pages",
     "report s.toml --from-records --records none --out pages2",

@@ -240,7 +240,8 @@ fn attached(at: &Path) {
              \x20           result.write(f'{{time!r}},{{node * height / cells!r}},{{p!r}},{{u!r}}\\n')\n"
         )
     };
-    for (name, factor) in [("good.py", "0.3 / cells**2"), ("worse.py", "0.3 / cells")] {
+    for (name, factor) in [("good.py", "0.3 / cells**2"), ("worse.py", "0.3 / cells"), ("crash.py", "1 / 0")]
+    {
         fs::write(at.join(name), solver(factor)).expect("written");
     }
     fs::write(at.join("nodes.toml"), "sample = \"nodes\"\n").expect("written");
@@ -255,19 +256,21 @@ fn attached(at: &Path) {
 }
 
 #[test]
-fn records_of_an_attached_solver_are_compared_with_those_of_another() {
+fn two_commands_of_an_attached_solver_are_compared_in_rounds() {
     let folder = TempDir::new().expect("a folder");
     let at = folder.path();
     attached(at);
-    let text = fs::read_to_string(at.join("own.toml")).expect("a study");
-    for solver in ["good", "worse"] {
-        fs::write(at.join("own.toml"), text.replace("good.py", &format!("{solver}.py"))).expect("written");
-        let ran = call(at, &["run", "own.toml", "--out", solver, "--allow-solvers"]);
-        assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
-    }
-    let same = call(at, &["compare", "good", "good"]);
+    let compare = |b: &str, more: &[&str]| {
+        let a = "python3 good.py {case} {out}";
+        call(
+            at,
+            &[&["compare", "--commands", a, b, "own.toml", "--allow-solvers", "--rounds", "2"], more]
+                .concat(),
+        )
+    };
+    let same = compare("python3 good.py {case} {out}", &[]);
     assert_eq!(same.code, 0, "{}{}", same.out, same.err);
-    let worse = call(at, &["compare", "good", "worse", "--format", "json"]);
+    let worse = compare("python3 worse.py {case} {out}", &["--format", "json"]);
     assert_eq!(worse.code, 1, "{}{}", worse.out, worse.err);
     let found: serde_json::Value = serde_json::from_str(&worse.out).expect("JSON");
     assert_eq!((&found[0]["accuracy"], &found[0]["cost"]), (&"regressed".into(), &"same".into()));
@@ -282,6 +285,19 @@ fn records_of_an_attached_solver_are_compared_with_those_of_another() {
         let [least, most] = ["least", "most"].map(|name| found[0]["seconds"][side][name].as_f64());
         assert!(least.expect("timed") <= most.expect("timed"), "{found:#}");
     }
+    let crash = compare("python3 crash.py {case} {out}", &[]);
+    assert_eq!(crash.code, 1, "{}{}", crash.out, crash.err);
+    for (arguments, told) in [
+        (&["compare", "--commands", "a", "b"][..], "takes one study file"),
+        (&["compare", "--commands", "a", "", "own.toml", "--allow-solvers"], "the command is empty"),
+    ] {
+        let refused = call(at, arguments);
+        assert!(refused.code != 0 && refused.err.contains(told), "{arguments:?}: {}", refused.err);
+    }
+    // What would be started is asked about, not what the study names.
+    let asked =
+        call_with(at, &[("OEDOMETER_ALLOW_SOLVERS", "")], &["compare", "--commands", "a", "b", "own.toml"]);
+    assert!(asked.code == 6 && asked.err.contains("runs `a` in"), "{}", asked.err);
 }
 
 #[test]

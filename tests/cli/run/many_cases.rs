@@ -1,7 +1,7 @@
 //! Many cases: packed records, shares, tables that are made without reading everything again.
 
 use crate::packs::{lines, members, only_pack, packs};
-use crate::program::{PROGRAM, Told, call, folder_with, table_without_times};
+use crate::program::{PROGRAM, Told, call, call_with, folder_with, table_without_times};
 use oedometer::{Case, Failure, FailureKind, Record, RecordStore, Status, Study, StudySource, Tier};
 use std::fs;
 use std::ops::Range;
@@ -279,6 +279,106 @@ fn a_run_that_is_told_to_end_keeps_what_is_done_and_says_what_is_left() {
     assert!((1..CASES).contains(&done), "{done} of {CASES}");
     let told = call(at, &["plan", "short.toml", "--missing", "out"]);
     assert_eq!(told.out.lines().count() - 1, CASES - done);
+}
+
+#[test]
+fn the_scripts_of_a_cluster_are_shown_without_a_cluster() {
+    let folder = folder_with(STUDY);
+    let at = folder.path();
+    let options = ["--engine", "slurm", "--tasks", "6", "--time", "10", "--partition", "short", "--dry-run"];
+    let told = run(at, &options);
+    assert_eq!(told.code, 0, "{}", told.err);
+    for part in [
+        "#SBATCH --partition=short",
+        "#SBATCH --time=10",
+        "#SBATCH --requeue",
+        "#SBATCH --signal=B:TERM@60",
+        "--shard $SLURM_ARRAY_TASK_ID/6 --balance",
+        "sbatch --parsable --array=1-6 out/slurm/array.sh",
+        "--dependency=afterany:$array",
+    ] {
+        assert!(told.out.contains(part), "no {part} in {}", told.out);
+    }
+    assert!(!at.join("out").exists(), "nothing is written");
+    assert_eq!(run(at, &["--tasks", "6"]).code, 2, "shares of an engine that is not named");
+}
+
+/// Programs of a scheduler that takes three tasks an array, note what they are asked, and refuse the n-th submission.
+#[cfg(unix)]
+fn fake_slurm(at: &Path, refused: usize) -> String {
+    use std::os::unix::fs::PermissionsExt;
+    let bin = at.join("bin");
+    fs::create_dir_all(&bin).expect("a folder");
+    let asked = at.join("asked");
+    let sbatch = format!(
+        "n=$(grep -c sbatch {0} 2>/dev/null); echo sbatch \"$@\" >> {0}\n[ \"$n\" = {refused} ] && {{ echo no room >&2; exit \
+         1; }}\necho $((101 + n))",
+        asked.display()
+    );
+    for (name, script) in [
+        ("scontrol", "echo 'Configuration data'; echo 'MaxArraySize            = 4'".to_owned()),
+        ("sbatch", sbatch),
+        ("scancel", format!("echo scancel \"$@\" >> {}", asked.display())),
+        ("squeue", "true".to_owned()),
+    ] {
+        fs::write(bin.join(name), format!("#!/bin/sh\n{script}\n")).expect("a file");
+        fs::set_permissions(bin.join(name), fs::Permissions::from_mode(0o755)).expect("rights");
+    }
+    format!("{}:{}", bin.display(), std::env::var("PATH").unwrap_or_default())
+}
+
+#[test]
+#[cfg(unix)]
+fn more_tasks_than_an_array_takes_are_as_many_shares_as_it_takes() {
+    let folder = folder_with(STUDY);
+    let at = folder.path();
+    let path = fake_slurm(at, 9);
+    let with = |tasks: &str, option: &str| {
+        let words = ["run", "short.toml", "--engine", "slurm", "--tasks", tasks, option];
+        call_with(at, &[("PATH", path.as_str())], &words)
+    };
+    let told = with("8", "--dry-run");
+    assert!(
+        told.code == 0 && told.err.contains("this Slurm accepts at most 3 tasks per array"),
+        "{}",
+        told.err
+    );
+    for part in ["--shard $SLURM_ARRAY_TASK_ID/3 --balance", "# array=$(sbatch --parsable --array=1-3 out/"] {
+        assert!(told.out.contains(part), "no {part} in {}", told.out);
+    }
+    assert!(!with("3", "--dry-run").err.contains("takes at most"));
+    let told = with("8", "--detach");
+    assert_eq!(told.code, 0, "{}", told.err);
+    let asked = fs::read_to_string(at.join("asked")).expect("what was asked");
+    let asked: Vec<&str> = asked.lines().collect();
+    assert!(asked.len() == 2 && asked[1].contains("--dependency=afterany:101 "), "{asked:?}");
+    // The scheduler gives each task its number: together they are all of the shares.
+    for task in 1..=3 {
+        let mut task_of = Command::new("bash");
+        task_of.current_dir(at).arg("out/slurm/array.sh").env("SLURM_ARRAY_TASK_ID", task.to_string());
+        let output = task_of.output().expect("bash");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    let told = call(at, &["plan", "short.toml", "--missing", "out"]);
+    assert!(told.err.contains("no case is missing"), "{}", told.err);
+}
+
+#[test]
+#[cfg(unix)]
+fn an_array_whose_merge_is_refused_is_taken_back() {
+    let folder = folder_with(STUDY);
+    let at = folder.path();
+    let path = fake_slurm(at, 1);
+    let told = call_with(
+        at,
+        &[("PATH", path.as_str())],
+        &["run", "short.toml", "--engine", "slurm", "--tasks", "8", "--detach"],
+    );
+    assert!(told.code == 3 && told.err.contains("no room"), "{}", told.err);
+    let asked = fs::read_to_string(at.join("asked")).expect("what was asked");
+    let back: Vec<&str> = asked.lines().filter(|line| line.starts_with("scancel")).collect();
+    assert_eq!(back, ["scancel 101"], "{asked}");
+    assert!(!at.join("out/slurm/job").exists(), "nothing is under way");
 }
 
 /// The share 2/2 of a whole run in packs of its own, each record changed on its way.
