@@ -422,7 +422,7 @@ fn of_record(study: &Study, record: &Record) -> Vec<String> {
     let states: Vec<SampledState> =
         record.snapshots.iter().map(|snapshot| state_of(snapshot, record)).collect();
     let parameters = column_parameters(&case.column, &case.material);
-    diagnosis(&parameters, reference.for_soil(&case.material), &states, &mapping).unwrap_or_default()
+    diagnosis(&parameters, reference.for_soil(&case.material), &states, &mapping)
 }
 
 /// A snapshot as the state that it was made of.

@@ -1,4 +1,8 @@
-//! Stretches of a column or layer without samples.
+//! Stretches of a column or layer without samples, and samples of its top.
+
+use crate::import::SampledState;
+use oedometer_exact::ColumnParameters;
+use oedometer_soil::wording::short;
 
 /// A gap of more than this many times the spacing around it counts as bare.
 const BARE: f64 = 1.5;
@@ -18,6 +22,9 @@ const FEWEST_GAPS: usize = 2;
 const AROUND: usize = 4;
 /// Samples that a band has on average where they have no order.
 const PER_INTERVAL: usize = 8;
+
+/// Difference over the final settlement from which on the top of a column is not plane.
+const UNEVEN_TOP: f64 = 0.02;
 
 /// A stretch without samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -199,6 +206,25 @@ pub fn incomplete_lattice(distances: &[f64], heights: &[f64], extent: [f64; 2]) 
         _ => false,
     };
     (!has_reason).then_some([samples, crossings])
+}
+
+/// A sentence about the top of a column that does not stay plane: samples of its highest row that settle differently.
+pub fn uneven_top(parameters: &ColumnParameters, states: &[SampledState]) -> Option<String> {
+    // Places that are repeated are of several states.
+    let is_whole =
+        |state: &&SampledState| state.repeated == 0 && state.displacement.len() == state.initial_height.len();
+    let last = states.last().filter(is_whole)?;
+    let highest = last.initial_height.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let is_top = |(y, _): &(&f64, &f64)| highest - **y <= SAME_PLACE * parameters.height;
+    let top = || last.initial_height.iter().zip(&last.displacement).filter(is_top).map(|(_, up)| *up);
+    let (least, most) = (top().reduce(f64::min)?, top().reduce(f64::max)?);
+    let [y, from, to] = [highest, least, most].map(short);
+    (most - least > UNEVEN_TOP * parameters.final_settlement().abs()).then(|| {
+        format!(
+            "your top is not plane: at y = {y} m u_y lies between {from} and {to} m: are the sides on rollers, and does the \
+             load press evenly?"
+        )
+    })
 }
 
 #[cfg(test)]

@@ -6,84 +6,57 @@
 //! prediction, never the load, is the yardstick. Where nothing explains, the place of the residual is said.
 
 mod columns;
-mod fits;
 mod hypotheses;
 mod patterns;
 mod readings;
 mod search;
-mod structure;
 mod world;
 
 use crate::import::SampledState;
 use crate::import::mapping::Mapping;
-use crate::score::coverage::SAME_PLACE;
+use crate::score::coverage::uneven_top;
 use columns::{Column, Field, Given, Output};
 use oedometer_exact::row::Axis;
-use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
+use oedometer_exact::{ColumnParameters, ReferenceKind};
 use oedometer_soil::wording::short;
-use search::{Explanation, Found};
+use readings::Reading;
+use search::{Explanation, Mistake};
+use world::World;
 
 /// Samples of an output that are looked at for patterns, and in the trials of hypotheses, where there are more than twice
 /// as many.
 const SAMPLES: [usize; 2] = [5000, 16];
-/// Difference over the final settlement from which on the top of a column is not plane.
-const UNEVEN_TOP: f64 = 0.02;
 /// Relative distance of times that stand for one.
 const SAME_TIME: f64 = 1e-6;
 /// Words of a sentence about several runs.
 pub const SEVERAL_RUNS: &str = "runs in one file";
-/// Words of a question about one column, where the others match.
-const ONLY: &str = "and only it: ";
-/// Error up to which a column matches.
-const MATCHES: f64 = 0.1;
-
-/// What a result is held against.
-struct Scene<'a> {
-    parameters: &'a ColumnParameters,
-    solution: Reference,
-    mapping: &'a Mapping,
-}
+/// Residual from which on one that nothing explains is told.
+const TOLD: f64 = 0.1;
+/// Error that an output at a time of its own may leave.
+const AT_ITS_TIME: f64 = 0.02;
+/// Error of an output that is right where others are wrong: at least, at most, and its share of the largest.
+const ELSEWHERE: [f64; 3] = [1e-3, 0.03, 0.1];
 
 /// Sentences on what seems to be wrong with the numbers of a result, compared with a reference.
-///
-/// # Errors
-/// When the reference refuses the result's own times.
 pub fn diagnosis(
     parameters: &ColumnParameters,
     reference: ReferenceKind,
     states: &[SampledState],
     mapping: &Mapping,
-) -> Result<Vec<String>, ExactError> {
-    let times: Vec<f64> = states.iter().map(|state| parameters.time_factor(state.time)).collect();
-    let solution = Reference::new(reference, parameters, &times)?;
-    let scene = Scene { parameters, solution, mapping };
-    let runs = runs(states);
-    let Told { causes: mut sentences, places } = match &runs[..] {
+) -> Vec<String> {
+    let scene = Scene { own: World::own(reference, parameters), mapping };
+    let told = match &runs(states)[..] {
         [outputs] => scene.told(outputs, None),
-        runs => Told { causes: vec![scene.told_of_runs(runs)], places: Vec::new() },
+        runs => vec![scene.told_of_runs(runs)],
     };
-    let uneven = scene.uneven_top(states);
-    sentences.extend(places.into_iter().filter(|_| uneven.is_none()));
-    sentences.extend(uneven);
-    Ok(sentences)
+    let is_over_depth = reference.row().axis == Axis::OverDepth;
+    told.into_iter().chain(uneven_top(parameters, states).filter(|_| is_over_depth)).collect()
 }
 
-/// What is told of a result: likely causes, and where a residual without one is.
-#[derive(Default)]
-struct Told {
-    causes: Vec<String>,
-    places: Vec<String>,
-}
-
-impl Told {
-    fn of(cause: String) -> Self {
-        Self { causes: vec![cause], places: Vec::new() }
-    }
-
-    fn joined(self) -> Option<String> {
-        let all: Vec<String> = self.causes.into_iter().chain(self.places).collect();
-        (!all.is_empty()).then(|| all.join("; "))
-    }
+/// A scene as it is, with the mapping of the files that are held against it.
+struct Scene<'a> {
+    own: World,
+    mapping: &'a Mapping,
 }
 
 /// The outputs of every run in a file: where two stand at one time with other values, the later one is of the next run.
@@ -93,13 +66,12 @@ fn runs(states: &[SampledState]) -> Vec<Vec<Output<'_>>> {
     for (place, state) in states.iter().enumerate() {
         let before = place.checked_sub(1).map(|before| &states[before]);
         let is_again =
-            before.is_some_and(|before| (state.time - before.time).abs() <= SAME_TIME * state.time.abs());
-        if is_again
-            && before.is_some_and(|before| SampledState { time: state.time, ..before.clone() } == *state)
-        {
+            |before: &&SampledState| (state.time - before.time).abs() <= SAME_TIME * state.time.abs();
+        let again = before.filter(is_again);
+        if again.is_some_and(|before| SampledState { time: state.time, ..before.clone() } == *state) {
             continue;
         }
-        rank = if is_again { rank + 1 } else { 0 };
+        rank = if again.is_some() { rank + 1 } else { 0 };
         if rank == runs.len() {
             runs.push(Vec::new());
         }
@@ -109,185 +81,152 @@ fn runs(states: &[SampledState]) -> Vec<Vec<Output<'_>>> {
     runs
 }
 
-impl Scene<'_> {
+impl<'a> Scene<'a> {
     /// A sentence on several runs in one file.
-    fn told_of_runs(&self, runs: &[Vec<Output<'_>>]) -> String {
-        let of = |(place, outputs): (usize, &Vec<Output<'_>>)| match self.told(outputs, None).joined() {
-            None => format!("run {} is right", place + 1),
-            Some(told) => format!("in run {} {told}", place + 1),
+    fn told_of_runs(&self, runs: &[Vec<Output<'a>>]) -> String {
+        let of = |(place, outputs): (usize, &Vec<Output<'a>>)| match self.told(outputs, None).join("; ") {
+            told if told.is_empty() => format!("run {} is right", place + 1),
+            told => format!("in run {} {told}", place + 1),
         };
-        let sentences: Vec<String> = runs.iter().enumerate().map(of).collect();
-        let count = runs.len();
+        let told: Vec<String> = runs.iter().enumerate().map(of).collect();
+        let [count, told] = [runs.len().to_string(), told.join("; ")];
         format!(
-            "there are {count} {SEVERAL_RUNS}, with other values at the same times: {}: was a second run appended?",
-            sentences.join("; ")
+            "there are {count} {SEVERAL_RUNS}, with other values at the same times: {told}: was a second run appended?"
         )
     }
 
     /// What seems wrong at the outputs of a run, or with some columns at some of them.
-    fn told(&self, outputs: &[Output<'_>], some: Option<&[Field]>) -> Told {
-        let given = |most: usize| Given::of(self.parameters, &self.solution, outputs, self.mapping, most);
+    fn told(&self, outputs: &[Output<'a>], some: Option<&[Field]>) -> Vec<String> {
+        let given = |most: usize| Given::of(&self.own, self.mapping, outputs, most);
         let (Some(mut whole), Some(mut thin)) = (given(SAMPLES[0]), given(SAMPLES[1])) else {
-            return Told::default();
+            return Vec::new();
         };
-        let are_all = some.is_none();
         whole
             .columns
             .retain(|column| column.is_right() || some.is_none_or(|some| some.contains(&column.field)));
         thin.judge_as(&whole);
-        let wrong: Vec<&Column> = whole.columns.iter().filter(|column| !column.is_right()).collect();
-        let are_all_wrong = wrong.len() == whole.columns.len();
-        let Some(first) = wrong.first() else { return Told::default() };
         // Structure first.
-        let zeros = || structure::content(first, &whole).filter(|_| wrong.len() == 1 && first.is_zero());
-        let steps = || structure::step_numbers(&thin).filter(|_| are_all);
-        if let Some(told) = Some(()).filter(|()| are_all_wrong).and_then(|()| zeros().or_else(steps)) {
-            return Told::of(told);
+        let are_all_wrong = !whole.columns.iter().any(Column::is_right);
+        let content = |column: &Column| patterns::content(column, &whole).filter(|_| some.is_none());
+        let alone = match &whole.columns[..] {
+            [column] if column.is_zero() => content(column),
+            _ if are_all_wrong && some.is_none() => self.step_numbers(outputs),
+            _ => None,
+        };
+        if let Some(told) = alone {
+            return vec![told];
         }
-        let found = search::explanation(&thin, &whole, are_all);
-        let is_world = found.as_ref().is_some_and(|found| found.best.world.count > 0);
-        let is_other = wrong.iter().any(|column| structure::content(column, &whole).is_some());
-        let is_closed = found.as_ref().is_some_and(|found| found.best.is_closed());
-        if let Some(told) = structure::same_state(&thin).filter(|_| !(is_world && is_closed || is_other)) {
-            return Told::of(told);
-        }
-        let causes = found.as_ref().map_or(Vec::new(), |found| sentences_of(found, &thin));
-        let mut told = Told { causes, places: Vec::new() };
+        let found = search::explanation(&thin, &whole, some.is_none());
+        let is_world = found.as_ref().is_some_and(|found| found.of.count > 0);
+        let mut told = found.as_ref().map_or(Vec::new(), |found| sentences(found, &thin));
         let is_open = |column: &&Column| match &found {
-            Some(found) => found.best.leaves(column.field, &thin),
+            Some(found) => found.leaves(column.field, &thin),
             None => !column.is_right(),
         };
         let open: Vec<&Column> = whole.columns.iter().filter(is_open).collect();
-        if are_all && !is_world && self.tell_apart(&open, &whole, outputs, &mut told) {
+        let apart = || self.told_apart(&open, &whole, outputs);
+        if let Some(apart) = (some.is_none() && !is_world).then(apart).flatten() {
+            told.push(apart);
             return told;
         }
-        for column in open.into_iter().filter(|column| !column.is_as_good_as_its_mesh()) {
-            if let Some(content) = structure::content(column, &whole).filter(|_| are_all) {
-                told.causes.push(content);
-            } else if is_world && structure::is_told(column) {
-                told.causes
-                    .push(format!("your {} does not match that: it is wrong in its own right", column.name));
-            } else if structure::is_told(column) {
-                told.places.extend(structure::place(column, &whole));
-            }
+        for column in open.into_iter().filter(|column| column.residual > column.mesh) {
+            let unlike = || patterns::unlike(column, &whole).filter(|_| some.is_none());
+            told.extend(content(column).or_else(unlike).or_else(|| match is_world {
+                _ if column.residual <= TOLD => None,
+                true => {
+                    Some(format!("your {} does not match that: it is wrong in its own right", column.name))
+                }
+                false => patterns::place(column, &whole),
+            }));
         }
         told
     }
 
-    /// Tells of columns that are wrong at some of the outputs alone, with what explains these.
-    fn tell_apart(
-        &self,
-        columns: &[&Column],
-        given: &Given<'_>,
-        outputs: &[Output<'_>],
-        told: &mut Told,
-    ) -> bool {
-        let Some([right, wrong]) = structure::apart(columns, given) else { return false };
-        let times = |numbers: &[usize]| {
-            numbers.iter().map(|output| short(given.times[*output])).collect::<Vec<_>>().join(", ")
+    /// A sentence on times that count outputs, with the time factors that the columns are at.
+    fn step_numbers(&self, outputs: &[Output<'a>]) -> Option<String> {
+        let parameters = &self.own.parameters;
+        let seconds = self.mapping.units.time.seconds(1.0, parameters.time(1.0));
+        let first = (outputs.first()?.state.time / seconds).round();
+        let is_counted = |(place, output): (usize, &Output<'a>)| {
+            (output.state.time / seconds - first - place as f64).abs() < 1e-6
         };
-        let is_wrong =
-            |output: &Output<'_>| wrong.iter().any(|number| given.times[*number] == output.state.time);
-        let others: Vec<Output<'_>> = outputs.iter().filter(|output| is_wrong(output)).copied().collect();
-        let fields: Vec<Field> = columns.iter().map(|column| column.field).collect();
-        let there = self.told(&others, Some(&fields));
-        if there.causes.is_empty()
-            && !columns.iter().any(|column| structure::is_told_at(column, given, &wrong))
-        {
-            return false;
-        }
-        let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
-        let (who, are) = (who(&names, "your"), if names.len() == 1 { "is" } else { "are" });
-        let alone =
-            format!("{who} {are} right at t = {} s and wrong only at t = {} s", times(&right), times(&wrong));
-        let run = there.causes.iter().any(|cause| cause.contains("× the time"));
-        let run = if run { "; are these outputs of another run?" } else { "" };
-        if there.causes.is_empty() {
-            told.places.push(alone);
-        } else {
-            told.causes.push(format!("{alone}: there {}{run}", there.causes.join("; ")));
-        }
-        true
-    }
-
-    /// A sentence about the top of a column that does not stay plane: samples of its highest row that settle differently.
-    fn uneven_top(&self, states: &[SampledState]) -> Option<String> {
-        if self.solution.kind().row().axis != Axis::OverDepth {
+        if outputs.len() < 3 || first > 1.0 || !outputs.iter().enumerate().all(is_counted) {
             return None;
         }
-        let settled = self.parameters.final_settlement();
-        let last = states.last().filter(|state| state.displacement.len() == state.initial_height.len())?;
-        let highest = last.initial_height.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let is_top = |y: f64| highest - y <= SAME_PLACE * self.parameters.height;
-        let top = last.initial_height.iter().zip(&last.displacement).filter(|(y, _)| is_top(**y));
-        let moved = top.map(|(_, moved)| *moved);
-        let [least, most] = moved.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], moved| {
-            [least.min(moved), most.max(moved)]
+        let own_time = |output: &Output<'a>| {
+            let given = Given::of(&self.own, self.mapping, std::slice::from_ref(output), SAMPLES[1])?;
+            let (time, _) = search::one_time(&given).filter(|(_, left)| *left <= AT_ITS_TIME)?;
+            Some(shown(parameters.time_factor(time)))
+        };
+        let times: Option<Vec<String>> = outputs.iter().map(own_time).collect();
+        let [second, third] = [first + 1.0, first + 2.0];
+        Some(format!(
+            "your times count outputs ({first}, {second}, {third}, …): are they step numbers instead of times? At T_v = {} all \
+             matches the exact solution",
+            times?.join(", ")
+        ))
+    }
+
+    /// A sentence on columns that are wrong at some of the outputs alone, with what explains these.
+    fn told_apart(&self, columns: &[&Column], given: &Given<'_>, outputs: &[Output<'a>]) -> Option<String> {
+        let misfit = |output: usize| {
+            let of = columns.iter().filter(|column| column.outputs.contains(&output));
+            let of = of
+                .map(|column| column.misfit(&column.itself(&column.exact(&given.exact)), 1.0, Some(output)));
+            of.fold(0.0, f64::max)
+        };
+        let misfits: Vec<f64> = (0..given.times.len()).map(misfit).collect();
+        let worst = misfits.iter().copied().fold(0.0, f64::max);
+        let [least, most, share] = ELSEWHERE;
+        let [right, wrong] = [true, false].map(|is_right| {
+            let is_so = |misfit: f64| (misfit <= (share * worst).clamp(least, most)) == is_right;
+            let all = given.times.iter().zip(&misfits).filter(|(_, misfit)| is_so(**misfit));
+            all.map(|(time, _)| *time).collect::<Vec<f64>>()
         });
-        // Places that are repeated are of several states.
-        (last.repeated == 0 && most - least > UNEVEN_TOP * settled.abs()).then(|| {
-            format!(
-                "your top is not plane: at y = {} m u_y lies between {} and {} m: are the sides on rollers, and does the \
-                 load press evenly?",
-                short(highest),
-                short(least),
-                short(most)
-            )
-        })
+        let is_wrong = |output: &&Output<'a>| wrong.contains(&output.state.time);
+        let others: Vec<Output<'a>> = outputs.iter().filter(is_wrong).copied().collect();
+        if right.is_empty() || others.is_empty() {
+            return None;
+        }
+        let fields: Vec<Field> = columns.iter().map(|column| column.field).collect();
+        let there = match self.told(&others, Some(&fields)).join("; ") {
+            there if there.is_empty() => there,
+            there if there.contains("× the time") => {
+                format!(": there {there}; are these outputs of another run?")
+            }
+            there => format!(": there {there}"),
+        };
+        let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
+        let (who, are) = (who(&names, "your"), if names.len() == 1 { "is" } else { "are" });
+        let [right, wrong] = [right, wrong].map(|times| listed(times.into_iter()));
+        let told = format!("{who} {are} right at t = {right} s and wrong only at t = {wrong} s{there}");
+        (worst > TOLD || !there.is_empty()).then_some(told)
     }
 }
 
 /// The sentences of an explanation, one for all columns that are read alike; of what they share first, its questions once.
-fn sentences_of(found: &Found, given: &Given<'_>) -> Vec<String> {
-    let Explanation { world, readings, .. } = &found.best;
-    let mut groups: Vec<(&readings::Reading, Vec<&str>)> = Vec::new();
-    for (reading, column) in readings.iter().zip(&given.columns) {
-        let Some(reading) = reading.as_ref().filter(|reading| reading.count + world.count > 0) else {
-            continue;
-        };
-        if column.is_right() && reading.count == 0 && !is_seen(column, found) {
-            continue;
-        }
-        let like = |group: &&mut (&readings::Reading, Vec<&str>)| {
-            (&group.0.begin, &group.0.asked) == (&reading.begin, &reading.asked)
-        };
-        match groups.iter_mut().find(like) {
+fn sentences(found: &Explanation, given: &Given<'_>) -> Vec<String> {
+    let mut groups: Vec<(&Mistake, Vec<&str>)> = Vec::new();
+    for (reading, column) in found.readings.iter().zip(&given.columns) {
+        // A column that is right takes part in what is said of all.
+        let is_seen = found.of.count > 0 && column.residual > 0.0;
+        let is_told = |reading: &&Reading| reading.of.count > 0 || is_seen;
+        let Some(Reading { of, .. }) = reading.as_ref().filter(is_told) else { continue };
+        match groups.iter_mut().find(|(other, _)| (&other.said, &other.asked) == (&of.said, &of.asked)) {
             Some((_, columns)) => columns.push(column.name),
-            None => groups.push((reading, vec![column.name])),
+            None => groups.push((of, vec![column.name])),
         }
     }
-    groups.sort_by_key(|(reading, _)| reading.count);
-    let is_match = |(reading, column): (&Option<readings::Reading>, &Column)| {
-        column.residual <= MATCHES || reading.as_ref().is_some_and(|reading| reading.left <= MATCHES)
-    };
-    let do_others_match = readings.iter().zip(&given.columns).all(is_match);
-    let is_alone = given.columns.len() == 1;
-    let sentence = |(place, (reading, columns)): (usize, (&readings::Reading, Vec<&str>))| {
-        let begin = match reading.factor {
-            Some(factor) if is_alone && world.count == 0 => {
-                format!("is the load {} × that of the problem? Or ", fits::shown(factor))
-            }
-            Some(_) if do_others_match && columns.len() == 1 => ONLY.to_owned(),
-            _ => String::new(),
-        };
-        let mut questions = reading.asked.clone();
-        if place == 0 {
-            questions.extend(world.asked.iter().cloned());
-        }
-        let alternatives = found.alternatives.iter().filter(|_| place == 0);
-        let asked = std::iter::once(&questions.join(" And "))
-            .chain(alternatives)
-            .map(|asked| &**asked)
-            .collect::<Vec<_>>()
-            .join(" Or ");
-        format!("{} {}{}: {begin}{asked}", who(&columns, "each of your"), reading.begin, world.said)
+    groups.sort_by_key(|(of, _)| of.count);
+    let shared = [&found.of.asked[..], &[]];
+    let alternatives = [&found.alternatives[..], &[]];
+    let sentence = |(place, (of, columns)): (usize, (&Mistake, Vec<&str>))| {
+        let place = place.min(1);
+        let asked = [&of.asked[..], shared[place]].concat().join(", and ");
+        let asked = [&[asked][..], alternatives[place]].concat().join(", or ");
+        format!("{} {}{}: {asked}?", who(&columns, "each of your"), of.said, found.of.said)
     };
     groups.into_iter().enumerate().map(sentence).collect()
-}
-
-/// Whether a column that is right takes part in what is said of all.
-fn is_seen(column: &Column, found: &Found) -> bool {
-    found.best.world.count > 0 && column.residual > 0.0
 }
 
 /// Columns by their names.
@@ -296,6 +235,15 @@ fn who(names: &[&str], several: &str) -> String {
         Some((last, others)) if !others.is_empty() => format!("{several} {} and {last}", others.join(", ")),
         _ => format!("your {}", names.concat()),
     }
+}
+
+fn listed(numbers: impl Iterator<Item = f64>) -> String {
+    numbers.map(short).collect::<Vec<_>>().join(", ")
+}
+
+/// A number to three digits: a fit gives no more.
+fn shown(number: f64) -> String {
+    short(format!("{number:.2e}").parse().unwrap_or(number)).replace('-', "−")
 }
 
 #[cfg(test)]

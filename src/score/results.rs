@@ -298,7 +298,7 @@ impl Scored {
             self.run.notes.extend(whole.profiles(states));
             let are_nodes = held.mapping.sample == Sample::Nodes;
             self.score.not_judged.extend(whole.end_without_sample(states, are_nodes));
-            let told = diagnosis(parameters, *reference, states, held.mapping)?;
+            let told = diagnosis(parameters, *reference, states, held.mapping);
             let are_runs = told.iter().any(|sentence| sentence.contains(SEVERAL_RUNS));
             // Of a mixture nothing else is explained.
             let mixture = self.run.contradictions.first().filter(|_| !are_runs);

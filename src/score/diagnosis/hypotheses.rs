@@ -1,121 +1,98 @@
-//! The table of hypotheses: what a column, or all of them, would hold with one mistake, and the question to ask.
+//! The table of hypotheses: what a column, or all of them, would hold with one mistake, and what to ask.
 //!
-//! A row names at most one number. [`READINGS`] concern one column; [`CHANGES`] and [`FAMILIES`] are other worlds, which
-//! concern all of them.
+//! A row has at most one number. [`scales`] are factors of a column; [`READINGS`] and [`AT_OTHER_TIMES`] are other contents
+//! of one column; [`WORLDS`] concern all of them.
 
-use super::columns::{Field, Given};
-use super::readings::{Exact, Held, negative, whole};
-use super::world::{Ends, World, with_soils};
+use super::columns::{Column, Field, Given};
+use super::readings::Exact;
+use super::shown;
+use super::world::{EDGES, Ends, World};
 use crate::import::mapping::units::{StressUnit, TimeUnit};
-use oedometer_exact::row::Axis;
-use oedometer_exact::{Reference, ReferenceKind};
+use oedometer_exact::{Drainage, Reference, ReferenceKind};
 use oedometer_soil::elementary::powi;
+use oedometer_soil::layers::{SoilLayer, SoilLayers};
+use oedometer_soil::material::Material;
 
 /// Units of stress, length and time, in SI.
-const STRESSES: [(&str, f64); 7] = [
-    ("Pa", 1.0),
-    ("kPa", 1e3),
-    ("MPa", 1e6),
-    ("GPa", 1e9),
-    ("bar", 1e5),
-    ("atm", 101_325.0),
-    ("psi", 6_894.757),
-];
+#[rustfmt::skip]
+const STRESSES: [(&str, f64); 7] =
+    [("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9), ("bar", 1e5), ("atm", 101_325.0), ("psi", 6_894.757)];
 const LENGTHS: [(&str, f64); 7] =
     [("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("µm", 1e-6), ("km", 1e3), ("in", 0.0254), ("ft", 0.3048)];
+#[rustfmt::skip]
 const TIMES: [(&str, f64); 9] = [
-    ("s", 1.0),
-    ("min", 60.0),
-    ("h", 3_600.0),
-    ("d", 86_400.0),
-    ("weeks", 604_800.0),
-    ("a", 365.25 * 86_400.0),
-    ("ms", 1e-3),
-    ("µs", 1e-6),
+    ("s", 1.0), ("min", 60.0), ("h", 3_600.0), ("d", 86_400.0), ("weeks", 604_800.0), ("a", 31_557_600.0), ("ms", 1e-3), ("µs", 1e-6),
     ("ns", 1e-9),
 ];
-/// Standard atmosphere and a bar, Pa.
-const ATMOSPHERES: [f64; 2] = [101_325.0, 1e5];
 /// Viscosity of water at 20 °C, Pa s.
 const VISCOSITY: f64 = 1.0e-3;
 /// Share by which a number may miss the one that has a name.
 pub const NAME: f64 = 2e-3;
-/// A time factor before anything drains.
-const EARLY: f64 = 1e-6;
 
 /// A factor that all values of a column have.
-#[derive(Clone, Debug)]
 pub struct Scale {
     /// What the file holds over the exact value.
     pub factor: f64,
-    pub asked: Vec<String>,
-    /// What several columns may share as one mistake.
-    pub key: String,
-    pub is_head: bool,
+    /// What to ask; nothing of the column's own unit.
+    pub asked: String,
+    /// Whether it is of this column alone, and goes with no other mistake.
+    pub is_alone: bool,
 }
 
-/// The factors of a column: its own, other units and no unit, each with either sign.
+/// The factors of a column: its own, other units, no unit, and those that another modulus or component makes.
 pub fn scales(field: Field, given: &Given<'_>) -> Vec<Scale> {
-    let (units, parameters) = (&given.mapping.units, given.parameters);
-    let scale = |factor: f64, asked: String, key: &str| Scale {
-        factor,
-        asked: Some(asked).filter(|asked| !asked.is_empty()).into_iter().collect(),
-        key: key.to_owned(),
-        is_head: key.starts_with("head"),
-    };
-    let mut all = vec![scale(1.0, String::new(), "")];
-    let mut add = |factor: f64, asked: String, key: &str| {
-        if all.iter().all(|other| (factor / other.factor - 1.0).abs() > NAME) {
-            all.push(scale(factor, asked, key));
+    let (units, parameters) = (&given.mapping.units, &given.own.parameters);
+    let (soil, weight) = (&parameters.soil, parameters.soil.unit_weight_of_water());
+    let mut all = vec![Scale { factor: 1.0, asked: String::new(), is_alone: false }];
+    let mut add = |factor: f64, asked: String, is_alone: bool| {
+        let is_new = all.iter().all(|other| (factor / other.factor - 1.0).abs() > NAME);
+        if is_new && factor.is_normal() {
+            all.push(Scale { factor, asked, is_alone });
         }
     };
-    let (table, own, name): (&[(&str, f64)], f64, &str) = if field.is_stress() {
+    let (table, own, name, whole) = if field.is_stress() {
         let unit = units.stress.unwrap_or(StressUnit::Pascal);
-        (&STRESSES, unit.pascals(), unit.name())
+        (&STRESSES, unit.pascals(), unit.name(), ("load, p/q", parameters.load))
     } else {
         let unit = units.displacement.unwrap_or(units.length);
-        (&LENGTHS, unit.metres(), unit.name())
+        (&LENGTHS, unit.metres(), unit.name(), ("final settlement", parameters.final_settlement()))
     };
     for (unit, si) in table {
-        add(own / si, format!("is it in {unit} where {name} is declared?"), unit);
+        add(own / si, format!("is it in {unit} where {name} is declared"), false);
     }
     if field == Field::Pressure {
-        let weight = parameters.soil.unit_weight_of_water();
         for (unit, metres) in [("m", 1.0), ("cm", 0.01), ("mm", 1e-3)] {
-            let asked = format!("is it a head in {unit}, p/γ_w, where {name} is declared?");
-            add(own / metres / weight, asked, &format!("head in {unit}"));
+            let asked = format!("is it a head in {unit}, p/γ_w, where {name} is declared");
+            add(own / metres / weight, asked, false);
         }
     }
-    if field.is_stress() {
-        add(own / parameters.load, "is it divided by the load, p/q?".to_owned(), "dimensionless");
-    } else {
-        let settled = parameters.final_settlement();
-        add(own / settled, "is it divided by the final settlement?".to_owned(), "dimensionless");
+    add(own / whole.1, format!("is it divided by the {}", whole.0), false);
+    for (factor, what) in [(2.0, "doubled"), (0.5, "halved")] {
+        // At small strain one column alone cannot tell the load from a factor of its own.
+        let load = if given.columns.len() == 1 { format!("{}, or ", is_load(factor)) } else { String::new() };
+        add(factor, format!("{load}is it {what} where it is written"), true);
     }
-    let turned = |scale: &Scale| {
-        let mut scale = scale.clone();
-        scale.factor = -scale.factor;
-        scale.asked.push("is the sign declared wrongly?".to_owned());
-        scale.key += " turned";
-        scale
-    };
-    let turned: Vec<Scale> = all.iter().map(turned).collect();
-    all.into_iter().chain(turned).collect()
+    let (ratio, nu) = (soil.oedometric_modulus() / soil.youngs_modulus, soil.poissons_ratio);
+    if field == Field::EffectiveStress {
+        add(nu / (1.0 - nu), "is it the horizontal component, σ_xx = ν/(1 − ν) σ_yy".to_owned(), true);
+    } else if field != Field::Pressure && parameters.soils.is_empty() {
+        add(ratio, "is E taken for E_oed where displacements are computed".to_owned(), true);
+        add(1.0 / ratio, "is E_oed taken for E where displacements are computed".to_owned(), true);
+    }
+    all
 }
 
-/// Numbers with their questions.
-type Names = fn(&Given<'_>, Field) -> Vec<(f64, String)>;
-
 /// The number of a row.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub enum Number {
+    /// None: the column itself, in its units and with its factors; or another content.
+    Itself,
     None,
-    /// Numbers with questions of their own.
-    Named(Names),
-    /// Fitted: a constant, what grows with the height, a factor, or a time, s.
-    Constant,
-    Slope,
-    Factor,
+    /// Numbers that have a name.
+    Named(&'static [f64]),
+    /// A fitted number in which the values are linear.
+    Linear,
+    /// A fitted time, s.
     Time,
 }
 
@@ -124,429 +101,381 @@ pub enum Number {
 pub enum Need {
     /// Another column that is right.
     OtherRight,
-    /// Two outputs.
     TwoOutputs,
-    /// A solution that answers at any time.
-    AnyTime,
-    /// Outputs that are all alike.
-    Still,
     /// One soil that strains along the height alone, in proportion to its stress.
     OneSoil,
-    /// Large strain.
-    Large,
-    /// A pressure head.
-    Head,
-    /// Another unit or sign, or none.
-    Scale,
-    NoScale,
-    /// No other cause: a factor that of one column alone may be the load's.
-    MaybeLoad,
+    LargeStrain,
+    /// No other unit or sign: a factor that is fitted.
+    OwnUnit,
     /// A sign that no column tells, because it is another quantity.
     AnySign,
 }
 
-use Need::{
-    AnySign, AnyTime, Head, Large, MaybeLoad, NoScale, OneSoil, OtherRight, Scale as Scaled, Still,
-    TwoOutputs,
-};
+/// What varies in the values of a row as the exact solution does: the yardstick of its error.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Varies {
+    AsHeld,
+    HeldAboutMean,
+    AsExact,
+    ExactAboutMean,
+}
 
 /// A hypothesis about one column.
 pub struct Row {
-    pub name: &'static str,
     pub of: &'static [Field],
+    /// What the column would be, and the question; `{}` is the number.
+    pub said: &'static str,
+    pub asked: &'static str,
+    pub holds: fn(&Exact<'_>, f64) -> Option<Vec<f64>>,
+    pub varies: Varies,
     pub number: Number,
     /// Single mistakes in it.
     pub count: usize,
     pub needs: &'static [Need],
-    pub holds: Holds,
-    /// What the column does, and the question; `{}` is the number.
-    pub said: &'static str,
-    pub asked: &'static str,
 }
 
 const P: &[Field] = &[Field::Pressure];
-const S: &[Field] = &[Field::EffectiveStress];
 const STRESS: &[Field] = &[Field::Pressure, Field::EffectiveStress];
-const UP: &[Field] = &[Field::Up];
-const MOVED: &[Field] = &[Field::Up, Field::Along, Field::Settlement];
-const PLACED: &[Field] = &[Field::Pressure, Field::EffectiveStress, Field::Up, Field::Along];
 const ANY: &[Field] = &[Field::Pressure, Field::EffectiveStress, Field::Up, Field::Along, Field::Settlement];
-const INCREASE: &[Field] = &[Field::Pressure, Field::Up, Field::Along, Field::Settlement];
+const MOVED: &[Field] = &[Field::Up, Field::Along, Field::Settlement];
+const NOT_STRESS: &[Field] = &[Field::Pressure, Field::Up, Field::Along, Field::Settlement];
+/// The standard atmosphere and a bar, Pa.
+const ATMOSPHERES: Number = Number::Named(&[101_325.0, 1e5]);
+/// A row with nothing to fit and nothing that it needs.
+const ROW: Row = Row {
+    of: P,
+    said: "the exact one",
+    asked: "",
+    holds: |x, _| Some(x.own.clone()),
+    varies: Varies::AsHeld,
+    number: Number::None,
+    count: 1,
+    needs: &[],
+};
 
-type Holds = fn(&Exact<'_>, f64) -> Option<Held>;
-
-const fn row(
-    name: &'static str,
-    of: &'static [Field],
-    needs: &'static [Need],
-    said: &'static str,
-    asked: &'static str,
-    holds: Holds,
-) -> Row {
-    Row { name, of, needs, said, asked, holds, number: Number::None, count: 1 }
-}
-
-impl Row {
-    const fn fitted(self, number: Number) -> Self {
-        Self { number, ..self }
-    }
-
-    const fn named(self, names: Names) -> Self {
-        Self { number: Number::Named(names), ..self }
-    }
-
-    const fn counts(self, count: usize) -> Self {
-        Self { count, ..self }
-    }
-}
-
-/// What one column may hold: name, columns, needs, what it does, the question, and the values with the part of them that
-/// varies as the exact solution does.
+/// What one column may hold.
 #[rustfmt::skip]
 pub const READINGS: &[Row] = &[
-    row("", ANY, &[Scaled], "", "", |x, _| whole(x.own.clone())),
-    row("factor", ANY, &[NoScale, MaybeLoad], "is {} × the exact one", "", |x, factor| whole(x.times(factor))).named(twice),
-    row("modulus", ANY, &[NoScale], "is {} × the exact one", "", |x, factor| whole(x.times(factor))).named(moduli_of_one),
-    row("effective stress", P, &[AnySign], "matches the exact effective stress",
-        "is it given instead of the pore pressure?", |x, _| whole(negative(&x.stress()))),
-    row("total stress", P, &[AnySign], "matches the exact total stress",
-        "is it given instead of the pore pressure?", |x, _| whole(x.total())),
-    row("pressure", S, &[AnySign], "matches the exact pore pressure",
-        "is it given instead of the effective stress?", |x, _| whole(x.pressure())),
-    row("pressure left in", S, &[AnySign], "matches the exact total stress", "is the pore pressure left in?",
-        |x, _| whole(negative(&x.total()))),
-    row("degree", P, &[], "matches 1 − p/q of the exact one", "is a degree of consolidation given instead?",
-        |x, _| Some(x.offset(-1.0, 1.0, &x.dimensionless()))),
-    row("strain", STRESS, &[OneSoil, AnySign], "matches the exact strain",
-        "is the strain given instead?", |x, _| whole(x.strain())),
-    row("porosity", STRESS, &[OneSoil], "matches the exact porosity",
-        "is the porosity given instead, as it changes with the strain?",
-        |x, _| Some(x.offset(1.0 - x.porosity(), x.porosity(), &x.strain()))),
-    row("void ratio", STRESS, &[OneSoil], "matches the exact void ratio",
-        "is the void ratio given instead?",
-        |x, _| Some(x.offset(1.0 / (1.0 - x.porosity()), x.porosity() / (1.0 - x.porosity()), &x.strain()))),
-    row("absolute", P, &[], "differs from the exact one by a constant of {} Pa", "",
-        |x, constant| Some(x.beside(|_| constant, true))).named(|_, _| atmospheres("")),
-    row("hydrostatic", P, &[], "differs from the exact one by a constant gradient of {} Pa/m", "",
-        |x, weight| Some(x.beside(|place| weight * x.depth(place), false))).named(hydrostatic),
-    row("hydrostatic of the present depth", P, &[Large], "differs from the exact one by a constant gradient of {} Pa/m",
-        "", |x, weight| Some(x.beside(|place| weight * x.present_depth(place), false))).named(hydrostatic),
-    row("hydrostatic and absolute", P, &[], "differs from the exact one by a hydrostatic part and {} Pa", "",
-        |x, constant| Some(x.beside(|place| x.weight() * x.depth(place) + constant, true))).named(|_, _| atmospheres("is the hydrostatic part left in? And ")).counts(2),
-    row("elevation", P, &[Head], "differs from the exact one by a constant gradient",
-        "is it a total head, with the elevation?",
-        |x, _| Some(x.beside(|place| x.weight() * (x.given.parameters.height - x.depth(place)), false))),
-    row("hydrostatic of another level", P, &[], "differs from the exact one by a hydrostatic part and {} Pa",
-        "is the hydrostatic part left in?",
-        |x, constant| Some(x.beside(|place| x.weight() * x.depth(place) + constant, true))).fitted(Number::Constant),
-    row("constant", P, &[], "differs from the exact one by a constant of {} Pa", "is a constant of {} Pa left in?",
-        |x, constant| Some(x.beside(|_| constant, true))).fitted(Number::Constant),
-    row("earlier stage", UP, &[TwoOutputs], "differs from the exact one by the same amount at all times, {} \
-         m at the top",
-        "is the displacement of an earlier stage, such as self-weight, left in?",
-        |x, top| Some(x.beside(|place| top * x.column.heights[place] / x.given.parameters.height, true))).fitted(Number::Slope),
-    row("later moment", MOVED, &[AnyTime, TwoOutputs], "matches the exact one less that of {} s",
-        "is it counted from a later time, {} s, instead of the start of loading?",
-        |x, moment| whole(x.less(&x.at(|_| moment)?, |_| false))).fitted(Number::Time),
-    row("restart", MOVED, &[AnyTime, TwoOutputs], "matches the exact one less that of the first output",
-        "is it reset after the first output, as by a restart or a new stage?",
-        |x, _| whole(x.less(&x.at(|_| x.given.times[0])?, |output| output == 0))),
-    row("per output", INCREASE, &[AnyTime, TwoOutputs], "matches what the exact one gains from output to output",
-        "is it the increment since the previous output, not the total?",
-        |x, _| whole(x.less(&x.at(|output| x.given.before[output])?, |output| x.given.before[output] == 0.0))),
-    row("output behind", ANY, &[AnyTime, TwoOutputs, OtherRight], "matches the exact one of the previous output",
-        "is it that of the previous output?", |x, _| whole(x.at(|output| x.given.before[output]))),
-    row("steps behind", ANY, &[AnyTime, TwoOutputs, OtherRight], "matches the exact one {} s earlier",
-        "does it lag {} s behind the other columns, as by one step or half a step?",
-        |x, late| whole(x.at(|output| (x.given.times[output] - late).max(0.0)))).fitted(Number::Time),
-    row("one state", ANY, &[AnyTime, Still, OtherRight], "matches the exact one of {} s at all outputs",
-        "is it the same state at all outputs, that of {} s?", |x, moment| whole(x.at(|_| moment))).fitted(Number::Time),
-    row("integral", STRESS, &[AnyTime, TwoOutputs], "matches the integral of the exact one over time",
-        "is it integrated over time?", |x, _| whole(x.integral())),
-    row("mean over time", STRESS, &[AnyTime, TwoOutputs], "matches the mean of the exact one since the start",
-        "is it the mean over time since the start?",
-        |x, _| whole(x.mean_over_time())),
-    row("rate", INCREASE, &[AnyTime, TwoOutputs], "matches the rate of the exact one",
-        "is it the rate (velocity), not the total?", |x, _| whole(x.rate())),
-    row("turned alone", PLACED, &[OtherRight], "matches the exact one upside down",
-        "is only this column written from the other end?", |x, _| whole(x.turned())),
-    row("unnamed factor", ANY, &[NoScale, MaybeLoad], "is {} × the exact one at all times and places",
-        "is a factor missing where it is written?", |x, factor| whole(x.times(factor))).fitted(Number::Factor).counts(2),
+    Row { of: ANY, number: Number::Itself, ..ROW },
+    Row { of: ANY, said: "{} × the exact one at all times and places", asked: "is a factor missing where it is written",
+        holds: |x, factor| x.each(|at| factor * x.own[at]), number: Number::Linear, count: 2, needs: &[Need::OwnUnit], ..ROW },
+    Row { said: "the exact effective stress", asked: "is it given instead of the pore pressure",
+        holds: |x, _| x.each(|at| -x.stress[at]), needs: &[Need::AnySign], ..ROW },
+    Row { said: "the exact total stress", asked: "is it given instead of the pore pressure",
+        holds: |x, _| x.each(|at| x.pressure[at] - x.stress[at]), needs: &[Need::AnySign], ..ROW },
+    Row { of: &[Field::EffectiveStress], said: "the exact pore pressure", asked: "is it given instead of the effective stress",
+        holds: |x, _| Some(x.pressure.clone()), needs: &[Need::AnySign], ..ROW },
+    Row { of: &[Field::EffectiveStress], said: "the exact total stress", asked: "is the pore pressure left in",
+        holds: |x, _| x.each(|at| x.stress[at] - x.pressure[at]), ..ROW },
+    Row { said: "1 − p/q of the exact one", asked: "is a degree of consolidation given instead",
+        holds: |x, _| x.each(|at| 1.0 - x.own[at] / x.load()), varies: Varies::HeldAboutMean, ..ROW },
+    Row { of: STRESS, said: "the exact strain", asked: "is the strain given instead",
+        holds: |x, _| x.each(|at| x.strain(at)), needs: &[Need::OneSoil, Need::AnySign], ..ROW },
+    Row { of: STRESS, said: "the exact porosity", asked: "is the porosity given instead, as it changes with the strain",
+        holds: |x, _| x.each(|at| x.porosity() + (1.0 - x.porosity()) * x.strain(at)), varies: Varies::HeldAboutMean, needs: &[Need::OneSoil], ..ROW },
+    Row { of: STRESS, said: "the exact void ratio", asked: "is the void ratio given instead",
+        holds: |x, _| x.each(|at| (x.porosity() + x.strain(at)) / (1.0 - x.porosity())), varies: Varies::HeldAboutMean, needs: &[Need::OneSoil], ..ROW },
+    Row { said: "the exact one plus {} Pa", asked: "is it an absolute pressure, with that of the atmosphere left in",
+        holds: |x, constant| x.each(|at| x.own[at] + constant), varies: Varies::HeldAboutMean, number: ATMOSPHERES, ..ROW },
+    Row { said: "the exact one with the weight of the water", asked: "is the hydrostatic part left in",
+        holds: |x, _| x.each(|at| x.own[at] + x.weight_above(at, 0.0)), varies: Varies::AsExact, ..ROW },
+    Row { said: "the exact one with the weight of the water", asked: "is the hydrostatic part left in",
+        holds: |x, _| x.each(|at| x.own[at] + x.weight_above(at, x.up[at])), varies: Varies::AsExact, needs: &[Need::LargeStrain], ..ROW },
+    Row { said: "the exact one less the weight of the water", asked: "is the hydrostatic part subtracted twice",
+        holds: |x, _| x.each(|at| x.own[at] - x.weight_above(at, 0.0)), varies: Varies::AsExact, ..ROW },
+    Row { said: "the exact one with the weight of the water and {} Pa",
+        asked: "is the hydrostatic part left in, and is it an absolute pressure, with that of the atmosphere left in",
+        holds: |x, constant| x.each(|at| x.own[at] + x.weight_above(at, 0.0) + constant),
+        varies: Varies::ExactAboutMean, number: ATMOSPHERES, count: 2, ..ROW },
+    Row { said: "the exact one with the weight of the water and {} Pa", asked: "is the hydrostatic part left in",
+        holds: |x, constant| x.each(|at| x.own[at] + x.weight_above(at, 0.0) + constant),
+        varies: Varies::ExactAboutMean, number: Number::Linear, ..ROW },
+    Row { said: "the exact one with the elevation", asked: "is it a total head, with the elevation",
+        holds: |x, _| x.each(|at| x.own[at] + x.weight() * x.column.heights[at]), varies: Varies::AsExact, ..ROW },
+    Row { said: "the exact one plus {} Pa", asked: "is a constant of {} Pa left in",
+        holds: |x, constant| x.each(|at| x.own[at] + constant), varies: Varies::HeldAboutMean, number: Number::Linear, ..ROW },
+    Row { of: &[Field::Up], said: "the exact one plus the same at all times, {} m at the top",
+        asked: "is the displacement of an earlier stage, such as self-weight, left in",
+        holds: |x, top| x.each(|at| x.own[at] + top * x.column.heights[at] / x.height()),
+        varies: Varies::ExactAboutMean, number: Number::Linear, needs: &[Need::TwoOutputs], ..ROW },
 ];
 
-/// A column that is written twice as large, or half.
-fn twice(_: &Given<'_>, _: Field) -> Vec<(f64, String)> {
-    let all = [(2.0, "is it doubled where it is written?"), (0.5, "is it halved where it is written?")];
-    all.map(|(factor, asked)| (factor, asked.to_owned())).to_vec()
+/// Rows as [`READINGS`] that ask for the exact fields of other times or places: in the file's unit.
+#[rustfmt::skip]
+pub const AT_OTHER_TIMES: &[Row] = &[
+    Row { of: MOVED, said: "the exact one less that of {} s", asked: "is it counted from a later time, {} s, instead of the start of loading",
+        holds: |x, moment| x.less(&x.at(|_| moment)?, |_| false), number: Number::Time, needs: &[Need::TwoOutputs], ..ROW },
+    Row { of: MOVED, said: "the exact one less that of the first output", asked: "is it reset after the first output, as by a restart or a new stage",
+        holds: |x, _| x.less(&x.at(|_| x.given.times[0])?, |output| output == 0), needs: &[Need::TwoOutputs], ..ROW },
+    Row { of: NOT_STRESS, said: "what the exact one gains from output to output", asked: "is it the increment since the previous output, not the total",
+        holds: |x, _| x.less(&x.at(|output| x.given.before[output])?, |output| x.given.before[output] == 0.0), needs: &[Need::TwoOutputs], ..ROW },
+    Row { of: ANY, said: "the exact one of the previous output", asked: "is it that of the previous output",
+        holds: |x, _| x.at(|output| x.given.before[output]), needs: &[Need::TwoOutputs, Need::OtherRight], ..ROW },
+    Row { of: ANY, said: "the exact one {} s earlier", asked: "does it lag {} s behind the other columns, as by one step or half a step",
+        holds: |x, late| x.at(|output| (x.given.times[output] - late).max(0.0)), number: Number::Time, needs: &[Need::TwoOutputs, Need::OtherRight], ..ROW },
+    Row { of: ANY, said: "the exact one of {} s at all outputs", asked: "is it the same state at all outputs, that of {} s",
+        holds: |x, moment| x.at(|_| moment), number: Number::Time, needs: &[Need::TwoOutputs, Need::OtherRight], ..ROW },
+    Row { of: STRESS, said: "the integral of the exact one over time", asked: "is it integrated over time",
+        holds: |x, _| x.integral(|_| 1.0), needs: &[Need::TwoOutputs], ..ROW },
+    Row { of: STRESS, said: "the mean of the exact one since the start", asked: "is it the mean over time since the start",
+        holds: |x, _| x.integral(|seconds| seconds), needs: &[Need::TwoOutputs], ..ROW },
+    Row { of: NOT_STRESS, said: "the rate of the exact one", asked: "is it the rate (velocity), not the total",
+        holds: |x, _| x.rate(), needs: &[Need::TwoOutputs], ..ROW },
+    Row { of: ANY, said: "the exact one upside down", asked: "is only this column written from the other end",
+        holds: |x, _| x.turned(), needs: &[Need::OtherRight], ..ROW },
+];
+
+/// Numbers with the questions that name them.
+pub type Names = Vec<(f64, String)>;
+
+/// The number of a [`Cause`], fitted.
+pub struct Fit {
+    /// Where it is looked for, between the first and the last time; by decades where it is positive.
+    pub range: fn(&Given<'_>, [f64; 2]) -> [f64; 2],
+    pub names: fn(&Given<'_>) -> Names,
+    /// What to ask of a number without a name.
+    pub asked: fn(&Given<'_>, f64) -> String,
+    /// How a sentence goes on where all larger numbers fit as well, if that means something.
+    pub or_more: &'static str,
 }
 
-/// Factors of one column that another modulus makes, or another component.
-fn moduli_of_one(given: &Given<'_>, field: Field) -> Vec<(f64, String)> {
-    let soil = &given.parameters.soil;
-    let (ratio, nu) = (soil.oedometric_modulus() / soil.youngs_modulus, soil.poissons_ratio);
-    let all = match field {
-        Field::EffectiveStress => {
-            vec![(nu / (1.0 - nu), "is it the horizontal component, σ_xx = ν/(1 − ν) σ_yy?")]
-        }
-        Field::Pressure => Vec::new(),
-        _ if !given.parameters.soils.is_empty() => Vec::new(),
-        _ => vec![
-            (ratio, "is E taken for E_oed where displacements are computed?"),
-            (1.0 / ratio, "is E_oed taken for E where displacements are computed?"),
-        ],
-    };
-    let is_other = |(factor, _): &(f64, &str)| *factor != 0.0 && (factor - 1.0).abs() > NAME;
-    all.into_iter().filter(is_other).map(|(factor, asked)| (factor, asked.to_owned())).collect()
-}
-
-/// The pressures of the atmosphere, each with its question.
-fn atmospheres(before: &str) -> Vec<(f64, String)> {
-    let asked = format!("{before}is it an absolute pressure, with that of the atmosphere left in?");
-    ATMOSPHERES.map(|pressure| (pressure, asked.clone())).to_vec()
-}
-
-/// The weight of water at rest, left in or taken off once more than it should be.
-fn hydrostatic(given: &Given<'_>, _: Field) -> Vec<(f64, String)> {
-    let weight = given.parameters.soil.unit_weight_of_water();
-    let once = (weight, "is the hydrostatic part left in?".to_owned());
-    vec![once, (-weight, "is the hydrostatic part subtracted twice?".to_owned())]
-}
-
-/// Whether a constant has a name, so that it need not be fitted.
-pub fn is_named_constant(constant: f64) -> bool {
-    ATMOSPHERES.iter().any(|named| (constant / named - 1.0).abs() <= NAME)
-}
-
-/// Another world with nothing fitted.
-pub struct Change {
-    /// Whether it is possible.
-    pub is_possible: fn(&Given<'_>, &World) -> bool,
+/// A hypothesis about all columns.
+pub struct Cause {
+    /// How a sentence goes on after "the exact one", and the question; `{}` is the number.
     pub said: &'static str,
     pub asked: &'static str,
-    pub of: fn(&Given<'_>, World) -> World,
+    pub is_possible: fn(&Given<'_>) -> bool,
+    pub of: fn(&Given<'_>, World, f64) -> World,
+    pub fit: Option<Fit>,
+    /// Whether some of the outputs may have it alone: the soil and the load are those of the others.
+    pub is_of_outputs: bool,
 }
 
-const fn change(
-    said: &'static str,
-    asked: &'static str,
-    is_possible: fn(&Given<'_>, &World) -> bool,
-    of: fn(&Given<'_>, World) -> World,
-) -> Change {
-    Change { is_possible, said, asked, of }
-}
+const FIT: Fit =
+    Fit { range: |_, _| [1e-6, 1e6], names: |_| Vec::new(), asked: |_, _| String::new(), or_more: "" };
+const CAUSE: Cause = Cause {
+    said: "",
+    asked: "",
+    is_possible: |_| true,
+    of: |_, own, _| own,
+    fit: None,
+    is_of_outputs: false,
+};
 
-fn is_slab(given: &Given<'_>) -> bool {
-    given.kind.row().axis == Axis::AlongSlab
-}
+/// Places that are counted from the other end.
+#[rustfmt::skip]
+pub const UPSIDE_DOWN: Cause = Cause { said: " upside down", asked: "is `y` counted from the other end",
+    is_possible: |given| !given.own.is_slab(), of: |_, own, _| World { ends: Ends::UpsideDown, ..own }, ..CAUSE };
+
+/// A factor of all times.
+#[rustfmt::skip]
+pub const CLOCK: Cause = Cause { said: " at {} × the time", asked: "is k, or are the times, far too large", is_possible: |given| given.own.is_slow(),
+    of: |_, own, factor| World { clock: [factor, 0.0], ..own }, is_of_outputs: true,
+    fit: Some(Fit {
+        range: |given, [first, last]| [EDGES[0] / given.own.parameters.time_factor(last), EDGES[1] / given.own.parameters.time_factor(first)],
+        names: clocks, asked: is_clock, or_more: " or more: everything has drained before the first time" }), ..CAUSE };
+
+/// One state at all outputs.
+#[rustfmt::skip]
+pub const ONE_STATE: Cause = Cause { said: " of {} s at all outputs",
+    is_possible: |given| given.own.is_slow() && !given.own.kind.row().is_prepared && given.columns.iter().all(Column::stands_still),
+    of: |_, own, moment| World { clock: [0.0, moment], ..own },
+    fit: Some(Fit { range: |given, _| [1e-6, 10.0].map(|factor| given.own.parameters.time(factor)),
+        asked: |_, _| "is the same state written, or read, every time".to_owned(), ..FIT }), ..CAUSE };
 
 /// What all columns may share.
 #[rustfmt::skip]
-pub const CHANGES: &[Change] = &[
-    change(" upside down", "is `y` counted from the other end?",
-        |given, _| !is_slab(given), |_, own| World { ends: Ends::UpsideDown, ..own }),
-    change(" with x turned", "does `x` count from the drained side?",
-        |given, _| is_slab(given), |_, own| World { ends: Ends::UpsideDown, ..own }),
-    change(" of a column that drains at its base", "is the base drained instead of the surface?",
-        |_, own| own.is_a_column(), |_, own| World { ends: Ends::DrainedBase, ..own }),
-    change(" of a column that drains at both ends", "is the base drained too?",
-        |given, own| own.is_a_column() && given.parameters.soils.is_empty(), |_, own| World { ends: Ends::BothDrained, ..own }),
-    change(" with x and y exchanged",
-        "are the axes exchanged? Of `mandel` x runs along the drained direction, from the middle, and y across",
-        |given, _| is_slab(given), |_, own| World { ends: Ends::AxesExchanged, ..own }),
-    change(" with x turned", "does `x` count from the other end?",
-        |given, _| given.is_plane(), |_, own| World { ends: Ends::OtherSide, ..own }),
-    change(" of incompressible water", "is the storage of the water, n/K_w, missing from the mass balance?",
-        |_, _| true, |_, own| with_water(own, 1e9)),
-    change(" of water softer by n", "is K_w taken for K_w/n?",
-        |_, _| true, |given, own| with_water(own, given.parameters.soil.porosity)),
-    change(" of compressible water",
-        "is the water of your solver compressible, so that `--reference terzaghi` is the right one?",
-        |_, own| own.kind == ReferenceKind::TerzaghiIncompressible, |_, own| World { kind: ReferenceKind::Terzaghi, ..own }),
-    change(" of compressible water",
-        "is the water of your solver compressible, so that `--reference cosine-layer` is the right one?",
-        |_, own| own.kind == ReferenceKind::CosineLayerIncompressible, |_, own| World { kind: ReferenceKind::CosineLayer, ..own }),
-    change(" of the start at all times", "is the surface closed, so that nothing drains?",
-        |_, own| own.is_slow(), |_, own| World { clock: [0.0, 0.0], ..own }),
-    change(" of the start at all times", "is the surface closed, so that nothing drains?",
-        |_, own| own.is_slow(), |_, own| World { clock: [0.0, 0.0], ends: Ends::Closed, ..own }),
-    change(" of a skeleton without the pressure",
-        "is the pore pressure missing from the momentum balance, so that the skeleton carries the load at once?",
-        |given, own| own.is_slow() && given.moves() && given.has_pressure(), |_, own| World { is_coupled: false, ..own }),
-    change(" of a slab whose load does not move to its middle", "is the top held plane by a rigid plate?",
-        |given, _| is_slab(given) && !given.moves(), without_plate),
-    change(" of another stiffness", "are λ and μ exchanged?",
-        |given, _| given.is_plane() || is_slab(given), |_, own| with_moduli_exchanged(own)),
+pub const WORLDS: &[Cause] = &[
+    UPSIDE_DOWN,
+    Cause { said: " with x turned", asked: "does `x` count from the drained side", is_possible: |given| given.own.is_slab(),
+        of: |_, own, _| World { ends: Ends::UpsideDown, ..own }, ..CAUSE },
+    Cause { said: " with x turned", asked: "does `x` count from the other end", is_possible: is_plane,
+        of: |_, own, _| World { ends: Ends::OtherSide, ..own }, ..CAUSE },
+    Cause { said: " with x and y exchanged", asked: "are the axes exchanged (of `mandel` x runs along the drained direction, from the middle, and y across)",
+        is_possible: |given| given.own.is_slab(), of: |_, own, _| World { ends: Ends::AxesExchanged, ..own }, ..CAUSE },
+    Cause { said: " of a column that drains at its base", asked: "is the base drained instead of the surface",
+        is_possible: |given| given.own.is_column(), of: drained_at_its_base, ..CAUSE },
+    Cause { said: " of a column that drains at both ends", asked: "is the base drained too",
+        is_possible: |given| given.own.is_column() && given.own.parameters.drainage == Drainage::Top,
+        of: |_, mut own, _| { own.parameters.drainage = Drainage::Both; own }, ..CAUSE },
+    Cause { said: " of incompressible water", asked: "is the storage of the water, n/K_w, missing from the mass balance",
+        of: |_, own, _| own.with_soils(|soil| soil.water_bulk_modulus *= 1e9), ..CAUSE },
+    Cause { said: " of water softer by n", asked: "is K_w taken for K_w/n",
+        of: |_, own, _| own.with_soils(|soil| soil.water_bulk_modulus *= soil.porosity), ..CAUSE },
+    Cause { said: " of compressible water", asked: "is the water of your solver compressible, so that `--reference terzaghi` is the right one",
+        is_possible: |given| given.own.kind == ReferenceKind::TerzaghiIncompressible,
+        of: |_, own, _| World { kind: ReferenceKind::Terzaghi, ..own }, ..CAUSE },
+    Cause { said: " of compressible water", asked: "is the water of your solver compressible, so that `--reference cosine-layer` is the right one",
+        is_possible: |given| given.own.kind == ReferenceKind::CosineLayerIncompressible,
+        of: |_, own, _| World { kind: ReferenceKind::CosineLayer, ..own }, ..CAUSE },
+    Cause { said: " of the start: nothing has drained at the last time",
+        asked: "is the surface closed, so that nothing drains, or is k, or are the times, far too small",
+        is_possible: |given| given.own.is_slow(), of: |_, own, _| World { clock: [0.0, 0.0], ..own }, ..CAUSE },
+    Cause { said: " of a slab whose load does not move to its middle", asked: "is the top held plane by a rigid plate",
+        is_possible: |given| given.own.is_slab() && !given.moves(), of: without_plate, ..CAUSE },
+    Cause { said: " of another stiffness", asked: "are λ and μ exchanged", is_possible: |given| is_plane(given) || given.own.is_slab(),
+        of: |_, own, _| own.with_soils(exchange_moduli), ..CAUSE },
+    Cause { said: " of {} × the load", of: |_, mut own, factor| { own.parameters.load *= factor; own },
+        is_possible: |given| (!given.own.is_linear() || given.moves() && given.is_stressed()) && !given.own.kind.is_manufactured(),
+        fit: Some(Fit { names: loads, asked: |_, factor| is_load(factor), ..FIT }), ..CAUSE },
+    ONE_STATE,
+    CLOCK,
+    Cause { said: " with {} × the stiffness", of: |_, own, factor| own.with_soils(|soil| soil.youngs_modulus *= factor),
+        is_possible: |given| given.own.is_slow() && given.moves() && !matches!(given.own.kind, ReferenceKind::LargeStrain(_)),
+        fit: Some(Fit { names: moduli, asked: is_stiffness, ..FIT }), ..CAUSE },
+    Cause { said: " {} s {side}", of: |_, own, moment| World { clock: [1.0, moment], ..own },
+        is_possible: |given| given.own.is_slow() && !given.own.kind.row().is_prepared,
+        fit: Some(Fit { range: |_, [first, last]| [-0.95 * first, last], asked: |_, moment| {
+            let late = if moment < 0.0 { "late" } else { "early" };
+            format!("do your times start at another moment, so that all are {} s too {late}", shown(moment.abs()))
+        }, ..FIT }), ..CAUSE },
+    Cause { said: " under a load that rises over {} s", of: |_, own, ramp| World { ramp, ..own },
+        is_possible: |given| given.own.kind.row().adds_up && !given.own.parameters.self_weight,
+        fit: Some(Fit { range: |_, [first, last]| [0.05 * first, 10.0 * last],
+            asked: |_, ramp| format!("does your load rise over {} s, in a ramp, whereas that of the problem is sudden", shown(ramp)), ..FIT }), ..CAUSE },
+    Cause { said: " of a skeleton without the pressure",
+        asked: "is the pore pressure missing from the momentum balance, so that the skeleton carries the load at once",
+        is_possible: |given| given.own.is_slow() && given.moves(), of: |_, own, _| World { is_coupled: false, ..own }, ..CAUSE },
 ];
 
-/// A slab of which every part carries its own load: a column of the slab's pressure at the start.
-fn without_plate(given: &Given<'_>, own: World) -> World {
-    let slab = Reference::new(ReferenceKind::Mandel, given.parameters, &[]).ok();
-    let start = slab.and_then(|slab| slab.fields(EARLY, 1.0).ok()).map_or(0.0, |start| start.pressure);
-    World { kind: ReferenceKind::TerzaghiIncompressible, pressure: start / given.parameters.load, ..own }
+/// What to ask of a number times another one, in a unit.
+fn is_number(number: f64, factor: f64, unit: &str) -> String {
+    format!("{} {unit} for {}", shown(factor * number), shown(number))
 }
 
-/// A world of λ for μ and μ for λ.
-fn with_moduli_exchanged(own: World) -> World {
-    let parameters = with_soils(&own.parameters, |layer| {
-        let (young, nu) = (layer.youngs_modulus.unwrap_or(1.0), layer.poissons_ratio.unwrap_or(0.25));
-        let shear = young / (2.0 * (1.0 + nu));
-        let lame = young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
-        layer.youngs_modulus = Some(lame * (3.0 * shear + 2.0 * lame) / (shear + lame));
-        layer.poissons_ratio = Some(shear / (2.0 * (shear + lame)));
-    });
-    World { parameters, ..own }
+fn is_clock(given: &Given<'_>, factor: f64) -> String {
+    let soil = &given.own.parameters.soil;
+    // A stiffness shows in displacements, too; without any it may be meant.
+    let or = if given.moves() {
+        String::new()
+    } else {
+        format!(", or E_oed {}", is_number(soil.oedometric_modulus(), factor, "Pa"))
+    };
+    match given.own.parameters.soils.is_empty() {
+        true => format!(
+            "is k {}{or}, or are the times off",
+            is_number(soil.hydraulic_conductivity, factor, "m/s")
+        ),
+        false => format!("is k of each layer {} × that of the problem, or are the times off", shown(factor)),
+    }
 }
 
-/// A world whose water is stiffer by a factor.
-fn with_water(own: World, factor: f64) -> World {
-    let parameters = with_soils(&own.parameters, |layer| {
-        layer.water_bulk_modulus = layer.water_bulk_modulus.map(|modulus| factor * modulus);
-    });
-    World { parameters, ..own }
+fn is_stiffness(given: &Given<'_>, factor: f64) -> String {
+    match given.own.parameters.soils.is_empty() {
+        true => {
+            format!("is E_oed {}", is_number(given.own.parameters.soil.oedometric_modulus(), factor, "Pa"))
+        }
+        false => "is the stiffness of each layer off".to_owned(),
+    }
 }
 
-/// A number of all columns that is fitted, with the names of some of its values.
-pub struct Family {
-    pub kind: Fitted,
-    pub is_possible: fn(&Given<'_>, &World) -> bool,
-    pub names: fn(&Given<'_>) -> Vec<(f64, String)>,
-    /// The world of a number.
-    pub of: fn(&Given<'_>, World, f64) -> World,
+pub fn is_load(factor: f64) -> String {
+    format!("is the load {} × that of the problem", shown(factor))
 }
 
-/// What the number of a family is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fitted {
-    /// Factor of all times.
-    Clock,
-    /// Time that is added to all, s.
-    Moment,
-    /// Time over which the load rises, s.
-    Ramp,
-    /// Factor of the stiffness.
-    Stiffness,
-    /// Factor of the load.
-    Load,
+fn is_plane(given: &Given<'_>) -> bool {
+    matches!(given.own.kind, ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible)
 }
 
-pub const FAMILIES: &[Family] = &[
-    Family {
-        kind: Fitted::Clock,
-        is_possible: |_, own| own.is_slow(),
-        names: clocks,
-        of: |_, own, factor| World { clock: [factor, 0.0], ..own },
-    },
-    Family {
-        kind: Fitted::Stiffness,
-        is_possible: |given, own| {
-            own.is_slow() && given.moves() && !matches!(own.kind, ReferenceKind::LargeStrain(_))
-        },
-        names: moduli,
-        of: |_, own, factor| own.stiffer(factor),
-    },
-    Family {
-        kind: Fitted::Load,
-        // At small strain one column alone cannot tell the load from a factor of its own.
-        is_possible: |given, own| {
-            let tells = !given.is_linear() || (given.moves() && given.is_stressed());
-            tells && !own.kind.is_manufactured()
-        },
-        names: |given| {
-            let asked =
-                |factor: f64| format!("is the load {} × that of the problem?", super::fits::shown(factor));
-            let all = [2.0, 0.5, 10.0, 0.1, 1e3, 1e-3, 1e6, 1e-6].map(|factor| (factor, asked(factor)));
-            all[..if given.moves() && given.is_stressed() { 8 } else { 2 }].to_vec()
-        },
-        of: |given, own, factor| own.loaded(factor, given),
-    },
-    Family {
-        kind: Fitted::Moment,
-        is_possible: |given, own| own.is_slow() && !given.kind.row().is_prepared,
-        names: |_| Vec::new(),
-        of: |_, own, moment| World { clock: [1.0, moment], ..own },
-    },
-    Family {
-        kind: Fitted::Ramp,
-        is_possible: |_, own| own.adds_up() && !own.parameters.self_weight,
-        names: |_| Vec::new(),
-        of: |_, own, ramp| World { ramp, ..own },
-    },
-];
+/// A column on its head, with its layers.
+fn drained_at_its_base(_: &Given<'_>, mut own: World, _: f64) -> World {
+    let turned: Vec<SoilLayer> = own.parameters.soils.iter().rev().copied().collect();
+    own.parameters.soils = SoilLayers::from_slice(&turned).unwrap_or(own.parameters.soils);
+    World { ends: Ends::DrainedBase, ..own }
+}
+
+/// λ for μ and μ for λ.
+fn exchange_moduli(soil: &mut Material) {
+    let Moduli { lame, shear, .. } = Moduli::of(soil.youngs_modulus, soil.poissons_ratio);
+    soil.youngs_modulus = lame * (3.0 * shear + 2.0 * lame) / (shear + lame);
+    soil.poissons_ratio = shear / (2.0 * (shear + lame));
+}
+
+/// A slab of which every part carries its own load: a column under the slab's pressure at the start.
+fn without_plate(_: &Given<'_>, mut own: World, _: f64) -> World {
+    let slab = Reference::new(ReferenceKind::Mandel, &own.parameters, &[]).ok();
+    let start = slab.and_then(|slab| slab.fields(1e-6, 1.0).ok());
+    own.parameters.load = start.map_or(0.0, |start| start.pressure);
+    World { kind: ReferenceKind::TerzaghiIncompressible, ..own }
+}
+
+/// Loads that have a name.
+fn loads(_: &Given<'_>) -> Names {
+    [2.0, 0.5, 10.0, 0.1, 1e3, 1e-3, 1e6, 1e-6].map(|factor| (factor, is_load(factor))).to_vec()
+}
 
 /// Factors of the time that have a name, each with its question.
-fn clocks(given: &Given<'_>) -> Vec<(f64, String)> {
-    let soil = &given.parameters.soil;
-    let (weight, gravity, n) = (soil.unit_weight_of_water(), soil.gravity, soil.porosity);
+fn clocks(given: &Given<'_>) -> Names {
+    let parameters = &given.own.parameters;
+    let (weight, gravity, n) =
+        (parameters.soil.unit_weight_of_water(), parameters.soil.gravity, parameters.soil.porosity);
     let declared = given.mapping.units.time;
-    let seconds = declared.seconds(1.0, given.parameters.time(1.0));
-    let mut all: Vec<(f64, String)> = Vec::new();
-    let mut unit = |name: &str, factor: f64| {
-        all.push((factor, format!("are times in {name} where {} is declared?", declared.name())));
-    };
-    for (name, si) in TIMES.into_iter().filter(|(name, _)| *name != declared.name()) {
-        unit(name, si / seconds);
-    }
-    if declared != TimeUnit::TimeFactor {
-        unit("T_v", given.parameters.time(1.0) / seconds);
+    let seconds = declared.seconds(1.0, parameters.time(1.0));
+    let mut all: Names = Vec::new();
+    let units = TIMES.into_iter().chain([("T_v", parameters.time(1.0))]);
+    let is_other =
+        |unit: &str| unit != declared.name() && !(unit == "T_v" && declared == TimeUnit::TimeFactor);
+    for (unit, si) in units.filter(|(unit, _)| is_other(unit)) {
+        all.push((si / seconds, format!("are times in {unit} where {} is declared", declared.name())));
     }
     for (word, seconds) in [("min", 60.0), ("hour", 3_600.0), ("day", 86_400.0), ("year", 365.25 * 86_400.0)]
     {
-        all.push((seconds, format!("is k in m/{word} taken for m/s?")));
-        all.push((1.0 / seconds, format!("is k in m/s taken for m/{word}?")));
+        all.push((seconds, format!("is k in m/{word} taken for m/s")));
+        all.push((1.0 / seconds, format!("is k in m/s taken for m/{word}")));
     }
-    // With a porosity of a half both mistakes look alike.
-    let [divided, multiplied] = if (n - 0.5).abs() < 0.01 {
-        [
-            "is k twice as large, or divided by the porosity?",
-            "is k half as large, or multiplied by the porosity?",
-        ]
-    } else {
-        ["is k divided by the porosity?", "is k multiplied by the porosity?"]
-    };
     let others = [
-        (gravity, "is γ_w taken as ρ_w, without g?"),
-        (1.0 / gravity, "is γ_w multiplied by g once too often?"),
-        (1.0 / VISCOSITY, "is k/μ taken for the hydraulic conductivity k?"),
-        (VISCOSITY, "is k divided by μ where it should not be?"),
-        (weight, "is k taken for k/γ_w?"),
-        (1.0 / weight, "is k/γ_w, or k/μ in place of it, taken for the hydraulic conductivity k?"),
-        (1.0 / n, divided),
-        (n, multiplied),
+        (gravity, "is γ_w taken as ρ_w, without g"),
+        (1.0 / gravity, "is γ_w multiplied by g once too often"),
+        (1.0 / VISCOSITY, "is k/μ taken for the hydraulic conductivity k"),
+        (VISCOSITY, "is k divided by μ where it should not be"),
+        (weight, "is k taken for k/γ_w"),
+        (1.0 / weight, "is k/γ_w, or k/μ in place of it, taken for the hydraulic conductivity k"),
+        (1.0 / n, "is k divided by the porosity, or are the times off"),
+        (n, "is k multiplied by the porosity, or are the times off"),
     ];
     all.extend(others.map(|(factor, asked)| (factor, asked.to_owned())));
     if !given.moves() {
-        // A stiffness shows in displacements, too; without any it may be meant.
         all.extend(moduli(given).into_iter().filter(|(_, asked)| !asked.contains("power of ten")));
     }
-    let or_stiffness = if given.moves() { ", or c_v," } else { ", or c_v or E_oed," };
+    let or = if given.moves() { ", or c_v," } else { ", or c_v or E_oed," };
     let tens = (1..=9).flat_map(|power| [power, -power]);
-    all.extend(tens.map(|power| (powi(10.0, power), format!("is k{or_stiffness} off by a power of ten?"))));
+    all.extend(tens.map(|power| (powi(10.0, power), format!("is k{or} off by a power of ten"))));
     all
 }
 
-/// Ratios of moduli that people take for one another, over the right one.
-fn moduli(given: &Given<'_>) -> Vec<(f64, String)> {
-    let soil = &given.parameters.soil;
-    let (young, nu, oedometric) = (soil.youngs_modulus, soil.poissons_ratio, soil.oedometric_modulus());
-    let bulk = young / (3.0 * (1.0 - 2.0 * nu));
-    let shear = young / (2.0 * (1.0 + nu));
-    let lame = bulk - 2.0 * shear / 3.0;
-    let mut all = vec![(oedometric / young, "is E_oed given as E?")];
-    if !(given.is_plane() || is_slab(given)) {
-        all.extend([
-            (young / oedometric, "is E taken for E_oed?"),
-            (bulk / oedometric, "is the bulk modulus K taken for E_oed?"),
-            ((shear + 2.0 * lame) / oedometric, "are λ and μ exchanged?"),
-            (
-                young / (1.0 - nu * nu) / oedometric,
-                "is the modulus of plane stress, E/(1 − ν²), taken for E_oed?",
-            ),
-            (shear / oedometric, "is the shear modulus G taken for E_oed?"),
-            (2.0 * shear / oedometric, "is 2G taken for E_oed?"),
-        ]);
+/// The moduli of a soil.
+struct Moduli {
+    bulk: f64,
+    shear: f64,
+    lame: f64,
+}
+
+impl Moduli {
+    fn of(young: f64, nu: f64) -> Self {
+        let (bulk, shear) = (young / (3.0 * (1.0 - 2.0 * nu)), young / (2.0 * (1.0 + nu)));
+        Self { bulk, shear, lame: bulk - 2.0 * shear / 3.0 }
     }
-    let ten = "is E off by a power of ten, or in another unit?";
-    all.extend([-6, -3, -2, -1, 1, 2, 3, 6].map(|power| (powi(10.0, power), ten)));
+}
+
+/// Ratios of moduli that people take for one another, over the right one.
+fn moduli(given: &Given<'_>) -> Names {
+    let soil = &given.own.parameters.soil;
+    let (young, nu, oedometric) = (soil.youngs_modulus, soil.poissons_ratio, soil.oedometric_modulus());
+    let Moduli { bulk, shear, lame } = Moduli::of(young, nu);
+    let columns = [
+        (young, "is E taken for E_oed"),
+        (bulk, "is the bulk modulus K taken for E_oed"),
+        (shear + 2.0 * lame, "are λ and μ exchanged"),
+        (young / (1.0 - nu * nu), "is the modulus of plane stress, E/(1 − ν²), taken for E_oed"),
+        (shear, "is the shear modulus G taken for E_oed"),
+        (2.0 * shear, "is 2G taken for E_oed"),
+    ];
+    let is_column = !(is_plane(given) || given.own.is_slab());
+    let of_column =
+        columns.into_iter().filter(|_| is_column).map(|(modulus, asked)| (modulus / oedometric, asked));
+    let tens = [-6, -3, -2, -1, 1, 2, 3, 6];
+    let tens = tens.map(|power| (powi(10.0, power), "is E off by a power of ten, or in another unit"));
+    let all = [(oedometric / young, "is E_oed given as E")].into_iter().chain(of_column).chain(tens);
     let is_other = |(ratio, _): &(f64, &str)| *ratio > 0.0 && (ratio - 1.0).abs() > NAME;
-    all.into_iter().filter(is_other).map(|(ratio, asked)| (ratio, asked.to_owned())).collect()
+    all.filter(is_other).map(|(ratio, asked)| (ratio, asked.to_owned())).collect()
 }

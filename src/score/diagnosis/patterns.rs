@@ -1,207 +1,225 @@
-//! Patterns of samples: one number in place of values, pressures that alternate, values in another order.
+//! Patterns of samples, and what a column holds or where its residual is when nothing explains it.
 
 use super::columns::{Column, Field, Given};
-use super::readings::{Held, Reading};
-use super::search::{FLOOR, Limit};
+use super::readings::Reading;
+use super::search::{FLOOR, Limit, Mistake};
+use super::{listed, shown};
 use crate::score::coverage::lines;
 use oedometer_soil::elementary::powi;
 use oedometer_soil::wording::short;
 
 /// Most samples in a row that have one sign of an alternating pressure: those of a cell.
 const LONGEST: usize = 4;
-/// Fewest lines of samples that show an alternation.
-const FEWEST: usize = 6;
+/// Fewest lines of samples that show an alternation, and fewest values that show an order, a place or a likeness.
+const FEWEST_LINES: usize = 6;
+const FEWEST: usize = 8;
 /// Share of the error of every output that an alternation may leave.
 const ALTERNATES: f64 = 0.5;
-/// Values below this share of a column's size are as good as zero.
+/// Values below this share of a column's size are as good as zero, and the share by which one is wrong.
 const NOTABLE: f64 = 0.01;
-/// Share of its size by which a value is wrong.
 const WRONG: f64 = 3e-3;
 /// Share of the error that another order may leave.
 const ORDERED: f64 = 0.2;
+/// Share of an error that sits in one place, and its share by which those of all outputs may differ.
+const IN_ONE_PLACE: f64 = 0.8;
+const SAME: f64 = 0.02;
+/// Correlation below which a column does not vary as the exact one.
+const UNLIKE: f64 = 0.5;
+const MID_SIDE: &str = "are they mid-side nodes without a value";
 
 /// The patterns of a column in the scene's own world; another order where nothing else explains it.
 pub fn of(field: Field, given: &Given<'_>, limit: &Limit, is_open: bool) -> Vec<Reading> {
     let Some(column) = given.columns.iter().find(|column| column.field == field) else { return Vec::new() };
-    let exact = column.exact(&given.own);
+    let exact = column.exact(&given.exact);
     let order = || order(column, &exact, limit).filter(|_| is_open && !given.are_picked);
     let all = [blank(column, &exact, given, limit), checkerboard(column, &exact, given), order()];
     all.into_iter().flatten().collect()
 }
 
-fn reading(begin: String, asked: &str, [count, fitted]: [usize; 2], left: f64, column: &Column) -> Reading {
-    let asked = vec![asked.to_owned()];
-    Reading {
-        key: format!("{begin} {}", column.name),
-        begin,
-        asked,
-        count,
-        fitted,
-        signs: 0,
-        factor: None,
-        left,
-    }
+fn reading(said: String, asked: &str, [count, fitted]: [usize; 2], left: f64, column: &Column) -> Reading {
+    let key = format!("{said} {}", column.name);
+    Reading { of: Mistake { said, asked: vec![asked.to_owned()], count, fitted }, key, left }
 }
 
 /// One number at places where nothing was written: an output, a place, every second row.
 fn blank(column: &Column, exact: &[f64], given: &Given<'_>, limit: &Limit) -> Option<Reading> {
-    let size = column.size(exact);
-    let is_seen = |place: usize| exact[place].abs() > NOTABLE * size;
-    let is_wrong =
-        |place: &usize| (column.values[*place] - exact[*place]).abs() > WRONG * size && is_seen(*place);
-    let wrong: Vec<usize> = (0..exact.len()).filter(is_wrong).collect();
+    let (size, values, height) = (column.size(exact, None), &column.values, given.own.parameters.height);
+    let seen: Vec<usize> = (0..exact.len()).filter(|at| exact[*at].abs() > NOTABLE * size).collect();
     // The number that stands most often where values are wrong.
-    let mut values: Vec<f64> = wrong.iter().map(|place| column.values[*place]).collect();
-    values.sort_unstable_by(f64::total_cmp);
-    let blank = *values.chunk_by(|a, b| a == b).max_by_key(|same| same.len())?.first()?;
-    let is_blank = |place: usize| column.values[place] == blank && is_seen(place);
-    let places: Vec<usize> = (0..exact.len()).filter(|place| is_blank(*place)).collect();
-    let inside = (0..exact.len()).filter(|place| is_seen(*place)).count();
-    if places.len() < 2 || 4 * (inside - places.len()) < inside {
+    let is_wrong = |at: &&usize| (values[**at] - exact[**at]).abs() > WRONG * size;
+    let mut wrong: Vec<f64> = seen.iter().filter(is_wrong).map(|at| values[*at]).collect();
+    wrong.sort_unstable_by(f64::total_cmp);
+    let blank = *wrong.chunk_by(|a, b| a == b).max_by_key(|same| same.len())?.first()?;
+    let blanks: Vec<usize> = seen.iter().copied().filter(|at| values[*at] == blank).collect();
+    let mut held = column.itself(exact);
+    blanks.iter().for_each(|at| held.values[*at] = blank);
+    let left = limit.accepts(column, &held, 1.0)?;
+    if blanks.len() < 2 || 4 * (seen.len() - blanks.len()) < seen.len() {
         return None;
     }
-    let held: Vec<f64> = (0..exact.len()).map(|at| if is_blank(at) { blank } else { exact[at] }).collect();
-    let left = limit.accepts(column, &Held { values: held, varying: exact.to_vec() }, 1.0, false)?;
-    let (place, asked) = place_of(column, given, &is_seen, &is_blank);
-    let asked = match asked {
-        "" if blank == 0.0 => "does a probe lie outside, or is a value missing there?",
-        "" => "is it a fill value?",
-        asked => asked,
+    // The groups of which all values are blank, if these are all blanks.
+    let whole = |groups: &[usize]| {
+        let mut all: Vec<usize> = blanks.iter().map(|at| groups[*at]).collect();
+        all.sort_unstable();
+        all.dedup();
+        seen.iter().all(|at| (values[*at] == blank) == all.contains(&groups[*at])).then_some(all)
+    };
+    let of = |groups: Vec<usize>, list: &[f64]| listed(groups.into_iter().map(|group| list[group]));
+    let missing = if blank == 0.0 {
+        "does a probe lie outside, or is a value missing there"
+    } else {
+        "is it a fill value"
+    };
+    let (place, asked) = match (whole(&column.outputs), whole(&rank(&column.heights, height))) {
+        (Some(outputs), _) => {
+            (format!(", all of t = {} s,", of(outputs, &given.times)), "was this output not written")
+        }
+        (_, Some(rows)) if rows.len() < 3 => {
+            (format!(", all of y = {} m,", of(rows, &lines(&column.heights, height))), missing)
+        }
+        (_, Some(rows)) if rows.windows(2).all(|pair| pair[1] - pair[0] == 2) => {
+            (", every second row,".to_owned(), MID_SIDE)
+        }
+        _ => (String::new(), if given.are_picked { MID_SIDE } else { missing }),
     };
     let looked = if given.are_picked { " looked at" } else { "" };
-    let begin = format!(
-        "is exactly {} at {} of {inside} samples{looked}{place} where it should not be, and right at the others",
-        short(blank),
-        places.len()
+    let [value, blanks, seen] = [short(blank), blanks.len().to_string(), seen.len().to_string()];
+    let said = format!(
+        "is exactly {value} at {blanks} of {seen} samples{looked}{place} where it should not be, and right at the others"
     );
-    Some(reading(begin, asked, [1, 0], left, column))
+    Some(reading(said, asked, [1, 0], left, column))
 }
 
-/// Where blanks are, and the question if that tells it.
-fn place_of(
-    column: &Column,
-    given: &Given<'_>,
-    is_seen: &dyn Fn(usize) -> bool,
-    is_blank: &dyn Fn(usize) -> bool,
-) -> (String, &'static str) {
-    let seen = || (0..column.values.len()).filter(|place| is_seen(*place));
-    let rows = rank(&column.heights, given.parameters.height);
-    // The groups of which all values are blank, if these are all blanks.
-    let whole = |group: &dyn Fn(usize) -> usize| {
-        let mut blank: Vec<usize> = seen().filter(|place| is_blank(*place)).map(group).collect();
-        blank.sort_unstable();
-        blank.dedup();
-        let are_whole = seen().all(|place| is_blank(place) == blank.contains(&group(place)));
-        are_whole.then_some(blank)
-    };
-    if let Some(outputs) = whole(&|place| column.outputs[place]) {
-        let times: Vec<String> = outputs.iter().map(|output| short(given.times[*output])).collect();
-        return (format!(", all of t = {} s,", times.join(", ")), "was this output not written?");
-    }
-    match whole(&|place| rows[place]) {
-        Some(blank) if blank.len() <= 2 => {
-            let lines = lines(&column.heights, given.parameters.height);
-            let heights: Vec<String> = blank.iter().map(|row| short(lines[*row])).collect();
-            (format!(", all of y = {} m,", heights.join(", ")), "")
-        }
-        Some(blank) if blank.windows(2).all(|pair| pair[1] - pair[0] == 2) => {
-            (", every second row,".to_owned(), "are they mid-side nodes without a value?")
-        }
-        _ => (String::new(), if given.are_picked { "are they mid-side nodes without a value?" } else { "" }),
-    }
-}
-
-/// Values that are too large and too small in turn, from line to line of samples or from cell to cell.
+/// Values that are too large and too small in turn, from line to line of samples or from cell to cell: by a share of the
+/// exact values, or of the load.
 fn checkerboard(column: &Column, exact: &[f64], given: &Given<'_>) -> Option<Reading> {
-    if !column.field.is_stress() || given.are_picked {
+    let up = rank(&column.heights, given.own.parameters.height);
+    let along = rank(&column.distances, given.own.parameters.length);
+    if !column.field.is_stress() || given.are_picked || up.iter().max()? + 1 < FEWEST_LINES {
         return None;
     }
-    let up = rank(&column.heights, given.parameters.height);
-    let along = rank(&column.distances, given.parameters.length);
-    if up.iter().copied().max()? + 1 < FEWEST {
-        return None;
-    }
-    let is_wide = along.iter().any(|number| *number > 0);
-    let outputs = column.own_outputs();
-    let mut best_pattern: Option<Reading> = None;
-    for (row, both) in (1..=LONGEST).flat_map(|row| [(row, false), (row, is_wide)]) {
-        let sign = |place: usize| {
-            let across = if both { along[place] / row } else { 0 };
-            if (up[place] / row + across).is_multiple_of(2) { 1.0 } else { -1.0 }
+    let (itself, off) = (column.itself(exact), column.beyond(exact, 1.0));
+    let of = |row: usize, is_of_field: bool, is_across: bool| {
+        let sign = |at: usize| {
+            let across = if is_across { along.get(at).map_or(0, |number| number / row) } else { 0 };
+            if (up[at] / row + across).is_multiple_of(2) { 1.0 } else { -1.0 }
         };
-        for of_field in [true, false] {
-            // An alternation has a share of the pressure, or of the load.
-            let pattern: Vec<f64> = (0..exact.len())
-                .map(|at| sign(at) * if of_field { exact[at] } else { column.scale })
-                .collect();
-            let amplitudes = amplitudes(column, exact, &pattern, given.times.len());
-            let held: Vec<f64> =
-                (0..exact.len()).map(|at| exact[at] + amplitudes[column.outputs[at]] * pattern[at]).collect();
-            let is_halved = |output: &usize| {
-                let [before, after] =
-                    [exact, &held].map(|held| column.misfit_of(*output, held, exact, 1.0, true));
-                after <= ALTERNATES * before
-            };
-            let left = column.misfit(&held, exact, 1.0, false);
-            if !outputs.iter().all(is_halved) || best_pattern.as_ref().is_some_and(|best| best.left <= left) {
-                continue;
-            }
-            let largest = amplitudes.iter().copied().map(f64::abs).fold(0.0, f64::max);
-            let of = if of_field { "of the exact one" } else { "of the load" };
-            let percent: f64 = format!("{:.1e}", 100.0 * largest).parse().unwrap_or(100.0 * largest);
-            let begin = format!(
-                "alternates from sample to sample by ± {} % {of} around the exact one, a checkerboard",
-                short(percent)
-            );
-            let asked = "does its interpolation fit that of the displacement (inf-sup), or does it need a stabilisation?";
-            best_pattern = Some(reading(begin, asked, [1, 1], left, column));
+        let part = |at: usize| sign(at) * if is_of_field { exact[at] } else { column.scale };
+        let pattern: Vec<f64> = (0..exact.len()).map(part).collect();
+        let mut held = column.itself(exact);
+        let (mut largest, mut is_halved) = (0.0_f64, true);
+        for output in column.own_outputs() {
+            let share = column.factor(&off, &pattern, Some(output));
+            let here = (0..exact.len()).filter(|at| share.is_finite() && column.outputs[*at] == output);
+            here.for_each(|at| held.values[at] += share * pattern[at]);
+            largest = largest.max(share.abs());
+            let [before, after] = [&itself, &held].map(|held| column.misfit(held, 1.0, Some(output)));
+            is_halved &= after <= ALTERNATES * before;
         }
-    }
-    best_pattern
+        let of = if is_of_field { "of the exact one" } else { "of the load" };
+        let percent = shown(100.0 * largest);
+        let said = format!(
+            "alternates from sample to sample by ± {percent} % {of} around the exact one, a checkerboard"
+        );
+        let asked =
+            "does its interpolation fit that of the displacement (inf-sup), or does it need a stabilisation";
+        let left = column.misfit(&held, 1.0, None);
+        is_halved.then(|| reading(said, asked, [1, 1], left, column))
+    };
+    let all = (1..=LONGEST).flat_map(|row| [true, false].map(|is_of_field| (row, is_of_field)));
+    let all =
+        all.flat_map(|(row, is_of_field)| [false, true].map(|is_across| of(row, is_of_field, is_across)));
+    all.flatten().min_by(|a, b| a.left.total_cmp(&b.left))
 }
 
 /// Numbers of the lines of places on which values stand, counted from 0.
 fn rank(places: &[f64], extent: f64) -> Vec<usize> {
     let lines = lines(places, extent);
-    let near = 1e-6 * extent;
-    places.iter().map(|place| lines.partition_point(|line| *line < place - near)).collect()
-}
-
-/// Of each output the amplitude of a pattern in the difference between values and exact ones.
-fn amplitudes(column: &Column, exact: &[f64], pattern: &[f64], outputs: usize) -> Vec<f64> {
-    let mut sums = vec![[0.0, 0.0]; outputs];
-    for (place, off) in column.beyond(exact, 1.0).iter().enumerate() {
-        let [both, own] = &mut sums[column.outputs[place]];
-        *both += pattern[place] / column.scale * (off / column.scale);
-        *own += powi(pattern[place] / column.scale, 2);
-    }
-    sums.into_iter().map(|[both, own]| if own > 0.0 { both / own } else { 0.0 }).collect()
+    places.iter().map(|place| lines.partition_point(|line| *line < place - 1e-6 * extent)).collect()
 }
 
 /// Outputs that have the right values in another order.
 fn order(column: &Column, exact: &[f64], limit: &Limit) -> Option<Reading> {
     let mut orders: Vec<Vec<usize>> = Vec::new();
-    let mut held = vec![0.0; exact.len()];
+    let mut held = column.itself(exact);
     for output in column.own_outputs() {
-        let here: Vec<usize> = (0..exact.len()).filter(|place| column.outputs[*place] == output).collect();
+        let here: Vec<usize> = (0..exact.len()).filter(|at| column.outputs[*at] == output).collect();
         let sorted = |values: &[f64]| {
             let mut places: Vec<usize> = (0..here.len()).collect();
             places.sort_by(|a, b| values[here[*a]].total_cmp(&values[here[*b]]));
             places
         };
         let (own, right) = (sorted(&column.values), sorted(exact));
-        for (own, right) in own.iter().zip(right) {
-            held[here[*own]] = exact[here[right]];
-        }
+        own.iter().zip(right).for_each(|(own, right)| held.values[here[*own]] = exact[here[right]]);
         orders.push(own);
-        if here.len() < FEWEST - 2 {
-            return None;
-        }
     }
-    let left = limit.accepts(column, &Held { values: held, varying: exact.to_vec() }, 1.0, false)?;
-    let is_better = left <= (ORDERED * column.residual).max(FLOOR);
-    let which = if orders.windows(2).all(|pair| pair[0] == pair[1]) { "the same" } else { "another one" };
-    let begin = format!("has the right values in another order, {which} at every output");
-    let asked = "are they numbered differently (a permutation)?";
-    is_better.then(|| reading(begin, asked, [2, 0], left, column))
+    let left =
+        limit.accepts(column, &held, 1.0).filter(|left| *left <= FLOOR.max(ORDERED * column.residual))?;
+    let which = if orders.iter().all(|order| *order == orders[0]) { "the same" } else { "another one" };
+    let said = format!("has the right values in another order, {which} at every output");
+    let is_long = orders.iter().all(|order| order.len() >= FEWEST / 2);
+    is_long.then(|| reading(said, "are they numbered differently (a permutation)", [2, 0], left, column))
+}
+
+/// What a column holds instead of values: zeros, a constant, numbers in order.
+pub fn content(column: &Column, given: &Given<'_>) -> Option<String> {
+    let (name, first, values) = (column.name, column.values[0], &column.values);
+    let counts = |output: usize| {
+        let here = column.at_output(output);
+        here.len() > 2 && first.fract() == 0.0 && here.windows(2).all(|pair| (pair[1] - pair[0]).abs() == 1.0)
+    };
+    if column.is_zero() {
+        let or = match column.field.is_stress() {
+            true if !given.moves() => {
+                ", or has everything drained before the first time (is k, or are the times, far too large)"
+            }
+            false if !given.is_stressed() => ", or is the surface closed, so that nothing drains",
+            _ => "",
+        };
+        Some(format!("your {name} is 0 everywhere: is it the wrong array{or}?"))
+    } else if values.len() > 1 && values.iter().all(|value| (value / first - 1.0).abs() <= 1e-9) {
+        Some(format!("your {name} is {} at all places and times: is it the wrong array?", short(first)))
+    } else {
+        let first = short(first);
+        let told = format!("your {name} counts from {first} by ones: are these node or cell numbers?");
+        column.own_outputs().into_iter().all(counts).then_some(told)
+    }
+}
+
+/// What a column that nothing explains is beside one that is right: the same at all outputs, or unlike the exact one.
+pub fn unlike(column: &Column, given: &Given<'_>) -> Option<String> {
+    let (values, exact) = (column.about_mean(&column.values), column.about_mean(&column.exact(&given.exact)));
+    let alike = column.factor(&values, &exact, None) * column.size(&exact, None) / column.size(&values, None);
+    let what = match column.stands_still() {
+        _ if !Limit::of(column, given).is_other_right => return None,
+        true => "is the same at all outputs and unlike the exact one at any time",
+        false if values.len() >= FEWEST && alike.abs() < UNLIKE && place(column, given).is_none() => {
+            "does not vary as the exact one"
+        }
+        false => return None,
+    };
+    Some(format!("your {} {what}: is it the wrong array?", column.name))
+}
+
+/// Where a residual without a cause sits, if it sits in one place.
+pub fn place(column: &Column, given: &Given<'_>) -> Option<String> {
+    let off = column.beyond(&column.exact(&given.exact), 1.0);
+    let height = given.own.parameters.height;
+    let power = |at: usize| powi(off[at] / column.scale, 2);
+    let is_row = |row: &f64| {
+        let there = (0..off.len()).filter(|at| (column.heights[*at] - row).abs() < 1e-6 * height);
+        there.map(power).sum::<f64>() > IN_ONE_PLACE * (0..off.len()).map(power).sum::<f64>()
+    };
+    let first = column.at_output(column.outputs[0]).len();
+    let differs: Vec<f64> = off.iter().enumerate().map(|(at, here)| here - off[at % first]).collect();
+    let is_same = off.len() == first * column.own_outputs().len()
+        && column.size(&differs, None) <= SAME * column.size(&off, None);
+    let what = match lines(&column.heights, height).into_iter().find(is_row) {
+        _ if off.len() < FEWEST => return None,
+        Some(row) => format!("nearly all of it sits at y = {} m", short(row)),
+        None if is_same && off.len() > first => "the difference is the same at all outputs".to_owned(),
+        None => return None,
+    };
+    let percent = short((100.0 * column.residual).round());
+    Some(format!("your {} is off by {percent} %, and no known mistake explains it: {what}", column.name))
 }
