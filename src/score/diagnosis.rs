@@ -30,6 +30,8 @@ const SAMPLES: [usize; 2] = [5000, 16];
 const SAME_TIME: f64 = 1e-6;
 /// Words of a sentence about several runs.
 pub const SEVERAL_RUNS: &str = "runs in one file";
+/// Words of a sentence about the place of a residual.
+const NO_MISTAKE: &str = "no known mistake explains it";
 /// Residual from which on one that nothing explains is told.
 const TOLD: f64 = 0.1;
 /// Error that an output at a time of its own may leave.
@@ -45,12 +47,16 @@ pub fn diagnosis(
     mapping: &Mapping,
 ) -> Vec<String> {
     let scene = Scene { own: World::own(reference, parameters), mapping };
-    let told = match &runs(states)[..] {
+    let mut told = match &runs(states)[..] {
         [outputs] => scene.told(outputs, None),
         runs => vec![scene.told_of_runs(runs)],
     };
     let is_over_depth = reference.row().axis == Axis::OverDepth;
-    told.into_iter().chain(uneven_top(parameters, states).filter(|_| is_over_depth)).collect()
+    if let Some(uneven) = uneven_top(parameters, states).filter(|_| is_over_depth) {
+        told.retain(|told| !told.contains(NO_MISTAKE));
+        told.push(uneven);
+    }
+    told
 }
 
 /// A scene as it is, with the mapping of the files that are held against it.

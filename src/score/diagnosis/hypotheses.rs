@@ -90,8 +90,9 @@ pub enum Number {
     None,
     /// Numbers that have a name.
     Named(&'static [f64]),
-    /// A fitted number in which the values are linear.
+    /// A fitted number in which the values are linear, and one that is a factor of them.
     Linear,
+    Factor,
     /// A fitted time, s.
     Time,
 }
@@ -105,7 +106,7 @@ pub enum Need {
     /// One soil that strains along the height alone, in proportion to its stress.
     OneSoil,
     LargeStrain,
-    /// No other unit or sign: a factor that is fitted.
+    /// No other unit or sign.
     OwnUnit,
     /// A sign that no column tells, because it is another quantity.
     AnySign,
@@ -158,7 +159,7 @@ const ROW: Row = Row {
 pub const READINGS: &[Row] = &[
     Row { of: ANY, number: Number::Itself, ..ROW },
     Row { of: ANY, said: "{} × the exact one at all times and places", asked: "is a factor missing where it is written",
-        holds: |x, factor| x.each(|at| factor * x.own[at]), number: Number::Linear, count: 2, needs: &[Need::OwnUnit], ..ROW },
+        holds: |x, factor| x.each(|at| factor * x.own[at]), number: Number::Factor, count: 2, needs: &[Need::OwnUnit], ..ROW },
     Row { said: "the exact effective stress", asked: "is it given instead of the pore pressure",
         holds: |x, _| x.each(|at| -x.stress[at]), needs: &[Need::AnySign], ..ROW },
     Row { said: "the exact total stress", asked: "is it given instead of the pore pressure",
@@ -197,7 +198,7 @@ pub const READINGS: &[Row] = &[
     Row { of: &[Field::Up], said: "the exact one plus the same at all times, {} m at the top",
         asked: "is the displacement of an earlier stage, such as self-weight, left in",
         holds: |x, top| x.each(|at| x.own[at] + top * x.column.heights[at] / x.height()),
-        varies: Varies::ExactAboutMean, number: Number::Linear, needs: &[Need::TwoOutputs], ..ROW },
+        varies: Varies::ExactAboutMean, number: Number::Linear, needs: &[Need::TwoOutputs, Need::OwnUnit], ..ROW },
 ];
 
 /// Rows as [`READINGS`] that ask for the exact fields of other times or places: in the file's unit.
@@ -247,20 +248,14 @@ pub struct Cause {
     pub is_possible: fn(&Given<'_>) -> bool,
     pub of: fn(&Given<'_>, World, f64) -> World,
     pub fit: Option<Fit>,
-    /// Whether some of the outputs may have it alone: the soil and the load are those of the others.
-    pub is_of_outputs: bool,
+    /// Whether it concerns times alone: some of the outputs may have it, and it goes with other units.
+    pub is_of_times: bool,
 }
 
 const FIT: Fit =
     Fit { range: |_, _| [1e-6, 1e6], names: |_| Vec::new(), asked: |_, _| String::new(), or_more: "" };
-const CAUSE: Cause = Cause {
-    said: "",
-    asked: "",
-    is_possible: |_| true,
-    of: |_, own, _| own,
-    fit: None,
-    is_of_outputs: false,
-};
+const CAUSE: Cause =
+    Cause { said: "", asked: "", is_possible: |_| true, of: |_, own, _| own, fit: None, is_of_times: false };
 
 /// Places that are counted from the other end.
 #[rustfmt::skip]
@@ -270,7 +265,7 @@ pub const UPSIDE_DOWN: Cause = Cause { said: " upside down", asked: "is `y` coun
 /// A factor of all times.
 #[rustfmt::skip]
 pub const CLOCK: Cause = Cause { said: " at {} × the time", asked: "is k, or are the times, far too large", is_possible: |given| given.own.is_slow(),
-    of: |_, own, factor| World { clock: [factor, 0.0], ..own }, is_of_outputs: true,
+    of: |_, own, factor| World { clock: [factor, 0.0], ..own }, is_of_times: true,
     fit: Some(Fit {
         range: |given, [first, last]| [EDGES[0] / given.own.parameters.time_factor(last), EDGES[1] / given.own.parameters.time_factor(first)],
         names: clocks, asked: is_clock, or_more: " or more: everything has drained before the first time" }), ..CAUSE };
@@ -323,7 +318,7 @@ pub const WORLDS: &[Cause] = &[
     Cause { said: " with {} × the stiffness", of: |_, own, factor| own.with_soils(|soil| soil.youngs_modulus *= factor),
         is_possible: |given| given.own.is_slow() && given.moves() && !matches!(given.own.kind, ReferenceKind::LargeStrain(_)),
         fit: Some(Fit { names: moduli, asked: is_stiffness, ..FIT }), ..CAUSE },
-    Cause { said: " {} s {side}", of: |_, own, moment| World { clock: [1.0, moment], ..own },
+    Cause { said: " {} s {side}", is_of_times: true, of: |_, own, moment| World { clock: [1.0, moment], ..own },
         is_possible: |given| given.own.is_slow() && !given.own.kind.row().is_prepared,
         fit: Some(Fit { range: |_, [first, last]| [-0.95 * first, last], asked: |_, moment| {
             let late = if moment < 0.0 { "late" } else { "early" };

@@ -3,7 +3,7 @@
 use super::columns::{Column, Field, Given};
 use super::readings::Reading;
 use super::search::{FLOOR, Limit, Mistake};
-use super::{listed, shown};
+use super::{NO_MISTAKE, listed, shown};
 use crate::score::coverage::lines;
 use oedometer_soil::elementary::powi;
 use oedometer_soil::wording::short;
@@ -221,5 +221,5 @@ pub fn place(column: &Column, given: &Given<'_>) -> Option<String> {
         None => return None,
     };
     let percent = short((100.0 * column.residual).round());
-    Some(format!("your {} is off by {percent} %, and no known mistake explains it: {what}", column.name))
+    Some(format!("your {} is off by {percent} %, and {NO_MISTAKE}: {what}", column.name))
 }

@@ -126,7 +126,7 @@ impl<'a> Exact<'a> {
             Number::Itself | Number::None => vec![0.0],
             Number::Named(numbers) => numbers.to_vec(),
             _ if column.values.len() < FEWEST => Vec::new(),
-            Number::Linear => {
+            Number::Linear | Number::Factor => {
                 let (Some(none), Some(one)) = (off(0.0), off(1.0)) else { return Vec::new() };
                 let of_one: Vec<f64> = none.iter().zip(&one).map(|(none, one)| none - one).collect();
                 vec![column.factor(&none, &of_one, None)]
@@ -188,13 +188,14 @@ fn of_row(x: &Exact<'_>, row: &Row, limit: &Limit, [is_own, is_timed]: [bool; 2]
     if !row.of.contains(&x.column.field) || !row.needs.iter().all(|need| is_met(*need, x, limit)) {
         return all;
     }
-    let is_factor = row.needs.contains(&Need::OwnUnit);
+    let is_factor = row.number == Number::Factor;
+    let is_unscaled = is_timed || row.needs.contains(&Need::OwnUnit);
     let is_in_unit = |scale: &&Scale| match scale.is_alone {
         true => is_own && row.number == Number::Itself,
-        false => scale.asked.is_empty() || !(is_factor || is_timed),
+        false => scale.asked.is_empty() || !is_unscaled,
     };
     let scales = x.column.scales.iter().filter(is_in_unit);
-    let signs = if is_factor || is_timed { &[1.0][..] } else { &[1.0, -1.0] };
+    let signs = if is_unscaled { &[1.0][..] } else { &[1.0, -1.0] };
     for (scale, sign) in scales.flat_map(|scale| signs.iter().map(move |sign| (scale, *sign))) {
         let factor = sign * scale.factor;
         for number in x.numbers(row, factor) {
@@ -223,7 +224,7 @@ fn of_row(x: &Exact<'_>, row: &Row, limit: &Limit, [is_own, is_timed]: [bool; 2]
             };
             let is_alone = scale.is_alone || is_factor || row.needs.contains(&Need::OtherRight);
             let of = if is_alone { x.column.name } else { "" };
-            let fitted = usize::from(matches!(row.number, Number::Linear | Number::Time));
+            let fitted = usize::from(matches!(row.number, Number::Linear | Number::Factor | Number::Time));
             all.push(Reading {
                 key: format!("{} {number} {} {sign} {of}", row.said, scale.asked),
                 of: Mistake { said, count: asked.len() + row.count - 1, asked, fitted },

@@ -35,7 +35,7 @@ const AS_WELL: f64 = 1.5;
 const FOLLOWED: usize = 3;
 const PER_DECADE: f64 = 5.0;
 const TRIALS: usize = 24;
-const HALVINGS: usize = 18;
+const HALVINGS: usize = 14;
 /// What a mistake of a column must gain in a fit.
 const PENALTY: f64 = 1.2;
 /// Most names and alternatives that a sentence offers.
@@ -322,14 +322,14 @@ pub fn explanation(given: &Given<'_>, whole: &Given<'_>, are_all_outputs: bool) 
     add(&mut all, vec![own.clone()]);
     // No number of all columns is wrong where one column is right.
     let is_any_right = given.columns.iter().any(Column::is_right);
-    let is_possible = |cause: &&Cause| (are_all_outputs || cause.is_of_outputs) && (cause.is_possible)(given);
+    let is_possible = |cause: &&Cause| (are_all_outputs || cause.is_of_times) && (cause.is_possible)(given);
     let causes: Vec<&Cause> = WORLDS.iter().filter(is_possible).collect();
     for (cause, in_units) in
         [false, true].into_iter().flat_map(|units| causes.iter().map(move |cause| (cause, units)))
     {
         let is_wanted = |best: &Explanation| match in_units {
             false => !best.is_enough(),
-            true => best.open > 0 || best.mistakes > 1,
+            true => cause.is_of_times && (best.open > 0 || best.mistakes > 1),
         };
         let is_fitted = !is_any_right && all.first().is_none_or(is_wanted);
         let is_of_pass = if cause.fit.is_some() { is_fitted } else { !in_units };

@@ -405,7 +405,7 @@ fn mistakes_that_the_numbers_show_are_named_and_others_are_not() {
     for (rows, told_of) in [
         (
             changed(&|row| Row { pressure: -row.pressure, ..*row }),
-            "your p is −1.00 × the exact one: is the sign",
+            "your p is −1 × the exact one: is the sign",
         ),
         (changed(&|row| Row { pressure: 1e-3 * row.pressure, ..*row }), "is it in kPa where Pa is declared?"),
         (

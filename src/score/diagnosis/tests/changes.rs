@@ -276,7 +276,7 @@ fn changes() -> Vec<Change> {
         clock(1.0 / 3600.0, &["m/hour"]),
         clock(1.0 / 86400.0, &["m/day|far too small"]),
         clock(1.0 / 9810.0, &["k/γ_w|far too small"]),
-        clock(86400.0, &["the time or more", "day|far too large"]),
+        clock(86400.0, &["the time or more|has everything drained", "day|far too large"]),
         clock(9810.0, &["the time or more", "k/γ_w|far too large"]),
         young(1.7, &["E_oed|stiffness"]),
         young(1e-3, &["power of ten|E_oed"]),
@@ -624,7 +624,7 @@ fn every_change_is_named_of(kind: ReferenceKind) {
     let others = [(1, 0.0), (0, NOISES[0]), (2, 0.0), (0, NOISES[1])];
     // Of solutions that take long only some.
     let [every, every_other] = match kind {
-        ReferenceKind::Layered => [2, 6],
+        ReferenceKind::Layered => [4, 12],
         ReferenceKind::CosineLayer => [1, 3],
         _ => [1, 1],
     };
