@@ -9,7 +9,7 @@ use crate::import::{SampledState, not_ended};
 use crate::solver::ExternalSolver;
 use crate::source::StudySource;
 use oedometer_case::{Case, Sample};
-use oedometer_formats::{ImportError, input_file};
+use oedometer_formats::{ImportError, input_file, with_named};
 use oedometer_soil::wording::short;
 use std::path::PathBuf;
 
@@ -257,12 +257,12 @@ fn names_no_finite_number(told: &str) -> bool {
     quoted || said.into_iter().any(is_it)
 }
 
-/// Digest over the contents of files in their order; where one cannot be read, what could.
+/// Digest over the contents of files in their order, with those that they name; where one cannot be read, what could.
 fn digest_of(files: &[PathBuf]) -> String {
     let mut hasher = blake3::Hasher::new();
-    for path in files {
+    for path in files.iter().flat_map(|path| with_named(path)) {
         // A file that vanishes meanwhile is told when it is read.
-        let _ = input_file::open(path).and_then(|file| hasher.update_reader(file).map(|_| ()));
+        let _ = input_file::open(&path).and_then(|file| hasher.update_reader(file).map(|_| ()));
     }
     hasher.finalize().to_hex()[..16].to_owned()
 }

@@ -413,6 +413,22 @@ pub fn linked(file: &Path, name: &str) -> Option<(String, String)> {
         .find(|(file, path)| !file.is_empty() && !path.is_empty())
 }
 
+/// The files beside an HDF5, or below its folder, that it may link to: those whose name stands in it where a link has one.
+pub(crate) fn linked_files(path: &Path) -> Vec<PathBuf> {
+    let Ok(bytes) = input_file::read(path) else { return Vec::new() };
+    let is_text = |text: &&[u8]| {
+        text.contains(&b'.') && text.len() <= usize::from(u8::MAX) && !text.iter().any(u8::is_ascii_control)
+    };
+    let names =
+        bytes.split(|byte| *byte == 0).filter(is_text).filter_map(|text| std::str::from_utf8(text).ok());
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut files: Vec<PathBuf> = names.filter(|name| is_below(name)).map(|name| folder.join(name)).collect();
+    files.sort();
+    files.dedup();
+    files.retain(|file| file.is_file() && file != path);
+    files
+}
+
 /// Type of the numbers of a field, and whether the lowest byte comes first.
 fn scalar_of(kind: &Datatype) -> Option<(Scalar, bool)> {
     let (code, size, order) = match kind {

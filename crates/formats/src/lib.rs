@@ -16,6 +16,7 @@ mod gmsh;
 mod hdf5;
 pub mod input_file;
 mod legacy_vtk;
+mod named_files;
 mod numpy;
 mod pflotran;
 mod steps;
@@ -34,6 +35,7 @@ pub use cells::Cells;
 pub use collections::collection_of;
 pub use frame::{Array, Association, Frame, OtherPoints, Wanted};
 pub use hdf5::linked;
+pub use named_files::with_named;
 pub use steps::{Kind, Step, read_states, steps_of};
 pub use times::{Axis, States, Use, states_by_time};
 

@@ -15,7 +15,7 @@ const LOOK: usize = 4096;
 /// First bytes of HDF5.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Most files that a collection may name.
-const MOST: usize = 100_000;
+pub(crate) const MOST: usize = 100_000;
 
 /// Kind of a file, by its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -267,7 +267,7 @@ fn read(path: &Path) -> Result<Vec<u8>, ImportError> {
 }
 
 /// The text of a file; invalid UTF-8 is replaced.
-fn read_text(path: &Path) -> Result<String, ImportError> {
+pub(crate) fn read_text(path: &Path) -> Result<String, ImportError> {
     let bytes = read(path)?;
     Ok(String::from_utf8(bytes)
         .unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned()))

@@ -3,14 +3,16 @@
 use crate::case::keys::MOST_CELLS;
 use crate::case::solver::DIGEST_DIGITS;
 use crate::case::{Attached, Case, SolverName, Tier};
+use crate::import::mapping::Mapping;
+use crate::import::runs::files_of;
 use crate::study::check::Checker;
 use crate::study::diagnostic::one_of;
-use crate::study::file::{ResultTable, SolverTable, StudyFile};
+use crate::study::file::{ResultTable, SolverTable, StudyFile, StudySource};
 use crate::study::reading::Placed;
 use crate::study::solver::{
     ExternalSolver, PLACEHOLDERS, PRESETS, Preset, SOLVE_UNITS, file_beside, placeholders_of,
 };
-use oedometer_formats::input_file;
+use oedometer_formats::{input_file, with_named};
 use oedometer_problem::method::Method;
 use std::path::{Path, PathBuf};
 
@@ -374,16 +376,24 @@ fn digest_of_solver(table: &SolverTable, folder: &Path) -> String {
     digest.finish()
 }
 
-/// Digest of what the result of a mesh is made of: how it is read, and what its files hold now. A file that changes
-/// makes other cases, so that no record of it is taken as theirs.
+/// Digest of what the result of a mesh is made of: how it is read, and what its files hold now, with those that they or the
+/// mapping name. A file that changes makes other cases, so that no record of it is taken as theirs.
 fn digest_of_result(table: &ResultTable, files: &[String], cells: &[usize], folder: &Path) -> String {
     let mut digest = Digest::default();
+    let mapping = table.mapping.as_ref().map(|typed| folder.join(typed.as_str()));
+    let source = mapping.and_then(|path| {
+        Some(StudySource { text: input_file::read_text(&path).ok()?, name: path.display().to_string() })
+    });
+    let mapping = source.and_then(|source| Mapping::read(&source).ok());
+    let curve = mapping.and_then(|mapping| mapping.settlement).map(|series| series.file);
     for file in files {
         digest.take("name", file);
         for cells in cells {
-            // What a pattern or a collection names is in the digest of the record.
-            let path = folder.join(file.replace("{cells}", &cells.to_string()));
-            if path.is_file() {
+            let given = folder.join(file.replace("{cells}", &cells.to_string()));
+            let all = files_of(&[given]).unwrap_or_default().concat();
+            let curve = curve.iter().filter_map(|curve| Some(all.first()?.parent()?.join(curve)));
+            let read = all.iter().flat_map(|path| with_named(path)).chain(curve);
+            for path in read.filter(|path| path.is_file()) {
                 digest.take("file", &digest_of_file(&path));
             }
         }

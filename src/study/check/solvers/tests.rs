@@ -136,3 +136,36 @@ fn another_content_or_another_reading_of_a_result_is_another_case() {
     fs::write(folder.path().join("p-4.csv"), "t,y,p\n1,0,0\n").expect("a file");
     assert_ne!(hash(""), own, "another content");
 }
+
+/// A part of a collection, a match of a pattern, a link and a curve are inputs as the file that names them is; the formats
+/// that name others are walked in `crates/formats/src/named_files.rs`.
+#[test]
+fn a_change_in_any_file_that_a_given_result_is_read_from_makes_another_case() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("a file");
+    write("a.pvd", "<VTKFile type=\"Collection\"><DataSet timestep=\"1\" file=\"part.pvtu\"/></VTKFile>");
+    write("part.pvtu", "<VTKFile type=\"PUnstructuredGrid\"><Piece Source=\"piece.vtu\"/></VTKFile>");
+    let mapping = "[columns]\np = \"p\"\n[settlement]\nfile = \"curve.csv\"\n[units]\ntime = \"s\"\nlength = \"m\"\n\
+                   stress = \"Pa\"\n[sign]\np = \"compression-positive\"\n";
+    write("m.toml", mapping);
+    for name in ["piece.vtu", "one_1.csv", "curve.csv"] {
+        write(name, "before");
+    }
+    let hash = |files: &str| {
+        let result = format!(
+            "[[result]]\nname = \"given\"\ncells = [4]\nfiles = [\"{files}\"]\nmapping = \"m.toml\"\n"
+        );
+        let text = text(&result, "method = [\"MPM\"]\ncells = [4]");
+        let study = checked(folder.path(), &text).expect("sound");
+        let case = study.planned.iter().find(|planned| study.solver_of(&planned.case).is_some());
+        case.expect("a given result").case.hash()
+    };
+    for (files, changed) in [("a.pvd", "piece.vtu"), ("one_*.csv", "one_1.csv"), ("one_*.csv", "curve.csv")] {
+        let before = hash(files);
+        assert_eq!(before, hash(files), "{files}");
+        write(changed, "after");
+        assert_ne!(before, hash(files), "{files}: {changed}");
+        write(changed, "before");
+        assert_eq!(before, hash(files), "{files}");
+    }
+}
