@@ -322,6 +322,10 @@ fn a_floor_is_attributed_to_the_cause_that_fits_it_with_advice() {
     let classification = floored(2e-4, &[step.clone(), model.clone()]);
     assert_eq!(classification.floor.clone().unwrap().limiter, Some(LimiterKind::Step), "{classification:?}");
     assert_eq!(classification.advice.unwrap(), "lower the time step by 64");
+    // A plateau of opposite sign, which the error passes through zero on its way to, is as high.
+    let context = Context { limiters: vec![step.clone()], ..formal(2.0) };
+    let dipped = classify(&series(|h| (h * h - 2e-4).abs()), &context);
+    assert_eq!(dipped.advice.as_deref(), Some("lower the time step by 64"), "{dipped:?}");
     let classification = floored(1.4e-4, &[step.clone(), model]);
     assert_eq!(classification.floor.clone().unwrap().limiter, Some(LimiterKind::Model));
     assert!(classification.advice.unwrap().contains("its own equations"));

@@ -260,6 +260,17 @@ mod tests {
         assert_eq!(points, before);
     }
 
+    #[test]
+    fn a_point_on_the_surface_is_at_home_in_the_cell_within() {
+        let mut points = Points::<1>::lattice(0.5, [3], 2);
+        points.position[5] = [1.5];
+        fit_volumes(&mut points, 0.5, [3], 1.5);
+        let [below, above] = [points.initial_volume[4], points.initial_volume[5]];
+        assert!((below + above - 0.5).abs() < 1e-14, "{below} + {above}");
+        let moment = below * points.position[4][0] + above * points.position[5][0];
+        assert!((moment - 0.5 * 1.25).abs() < 1e-14, "{moment}");
+    }
+
     /// Largest force, N, left at the nodes of a column of jittered points at rest under its weight: stress and pressure
     /// are linear over the height, and 21 kPa at the base.
     fn left_at_rest<const D: usize>(method: &str, configuration: Configuration, column: &Column) -> f64 {
