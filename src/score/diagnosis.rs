@@ -217,7 +217,9 @@ fn sentences(found: &Explanation, given: &Given<'_>) -> Vec<String> {
         // A column that is right takes part in what is said of all.
         let is_seen = found.of.count > 0 && column.residual > 0.0;
         let is_told = |reading: &&Reading| reading.of.count > 0 || is_seen;
-        let Some(Reading { of, .. }) = reading.as_ref().filter(is_told) else { continue };
+        let Some(Reading { of, .. }) = reading.as_ref().filter(is_told) else {
+            continue;
+        };
         match groups.iter_mut().find(|(other, _)| (&other.said, &other.asked) == (&of.said, &of.asked)) {
             Some((_, columns)) => columns.push(column.name),
             None => groups.push((of, vec![column.name])),
@@ -238,7 +240,9 @@ fn sentences(found: &Explanation, given: &Given<'_>) -> Vec<String> {
 /// Columns by their names.
 fn who(names: &[&str], several: &str) -> String {
     match names.split_last() {
-        Some((last, others)) if !others.is_empty() => format!("{several} {} and {last}", others.join(", ")),
+        Some((last, others)) if !others.is_empty() => {
+            format!("{several} {} and {last}", others.join(", "))
+        }
         _ => format!("your {}", names.concat()),
     }
 }

@@ -417,7 +417,7 @@ pub fn linked(file: &Path, name: &str) -> Option<(String, String)> {
 pub(crate) fn linked_files(path: &Path) -> Vec<PathBuf> {
     let Ok(bytes) = input_file::read(path) else { return Vec::new() };
     let is_text = |text: &&[u8]| {
-        text.contains(&b'.') && text.len() <= usize::from(u8::MAX) && !text.iter().any(u8::is_ascii_control)
+        text.contains(&b'.') && u8::try_from(text.len()).is_ok() && !text.iter().any(u8::is_ascii_control)
     };
     let names =
         bytes.split(|byte| *byte == 0).filter(is_text).filter_map(|text| std::str::from_utf8(text).ok());

@@ -22,8 +22,9 @@ const SHARE_OF_OUTPUT: f64 = 0.05;
 const RIGHT: f64 = 1e-3;
 
 /// What a column of a result is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Field {
+    #[default]
     Pressure,
     EffectiveStress,
     /// The displacement along the height.
@@ -50,6 +51,7 @@ pub struct Held {
 }
 
 /// A column: its values at all samples of all outputs that have it, one after the other.
+#[derive(Default)]
 pub struct Column {
     pub field: Field,
     /// Its name for the user.
@@ -238,19 +240,7 @@ impl<'a> Given<'a> {
     fn column(&self, field: Field, name: &'static str) -> Option<Column> {
         let parameters = &self.own.parameters;
         let scale = if field.is_stress() { parameters.load } else { parameters.final_settlement() };
-        let mut column = Column {
-            field,
-            name,
-            scale,
-            scales: Vec::new(),
-            values: Vec::new(),
-            at: Vec::new(),
-            heights: Vec::new(),
-            distances: Vec::new(),
-            outputs: Vec::new(),
-            residual: 0.0,
-            mesh: 0.0,
-        };
+        let mut column = Column { field, name, scale, ..Column::default() };
         let (mut first, mut rows) = (0, 1);
         for (number, (output, set)) in self.sets.iter().enumerate() {
             let settled = set.surface_displacement.map(|up| -up);

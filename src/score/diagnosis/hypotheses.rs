@@ -468,7 +468,7 @@ fn moduli(given: &Given<'_>) -> Names {
     let is_column = !(is_plane(given) || given.own.is_slab());
     let of_column =
         columns.into_iter().filter(|_| is_column).map(|(modulus, asked)| (modulus / oedometric, asked));
-    let tens = [-6, -3, -2, -1, 1, 2, 3, 6];
+    let tens = [-3, -2, -1, 1, 2, 3];
     let tens = tens.map(|power| (powi(10.0, power), "is E off by a power of ten, or in another unit"));
     let all = [(oedometric / young, "is E_oed given as E")].into_iter().chain(of_column).chain(tens);
     let is_other = |(ratio, _): &(f64, &str)| *ratio > 0.0 && (ratio - 1.0).abs() > NAME;

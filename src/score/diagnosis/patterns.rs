@@ -29,7 +29,9 @@ const MID_SIDE: &str = "are they mid-side nodes without a value";
 
 /// The patterns of a column in the scene's own world; another order where nothing else explains it.
 pub fn of(field: Field, given: &Given<'_>, limit: &Limit, is_open: bool) -> Vec<Reading> {
-    let Some(column) = given.columns.iter().find(|column| column.field == field) else { return Vec::new() };
+    let Some(column) = given.columns.iter().find(|column| column.field == field) else {
+        return Vec::new();
+    };
     let exact = column.exact(&given.exact);
     let order = || order(column, &exact, limit).filter(|_| is_open && !given.are_picked);
     let all = [blank(column, &exact, given, limit), checkerboard(column, &exact, given), order()];

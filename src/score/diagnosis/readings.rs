@@ -127,12 +127,16 @@ impl<'a> Exact<'a> {
             Number::Named(numbers) => numbers.to_vec(),
             _ if column.values.len() < FEWEST => Vec::new(),
             Number::Linear | Number::Factor => {
-                let (Some(none), Some(one)) = (off(0.0), off(1.0)) else { return Vec::new() };
+                let (Some(none), Some(one)) = (off(0.0), off(1.0)) else {
+                    return Vec::new();
+                };
                 let of_one: Vec<f64> = none.iter().zip(&one).map(|(none, one)| none - one).collect();
                 vec![column.factor(&none, &of_one, None)]
             }
             Number::Time => {
-                let Some([first, last]) = self.given.span() else { return Vec::new() };
+                let Some([first, last]) = self.given.span() else {
+                    return Vec::new();
+                };
                 let left = |power: f64| off(exp(power)).map_or(f64::INFINITY, |off| column.size(&off, None));
                 let least = minima(&left, [ln(1e-3 * first), ln(3.0 * last)], TRIALS);
                 least.first().map(|(at, _)| exp(*at)).into_iter().collect()
@@ -200,7 +204,9 @@ fn of_row(x: &Exact<'_>, row: &Row, limit: &Limit, [is_own, is_timed]: [bool; 2]
         let factor = sign * scale.factor;
         for number in x.numbers(row, factor) {
             let held = x.held(row, number);
-            let Some(left) = held.and_then(|held| limit.accepts(x.column, &held, factor)) else { continue };
+            let Some(left) = held.and_then(|held| limit.accepts(x.column, &held, factor)) else {
+                continue;
+            };
             // A factor without a name in all columns is the load's, or an inaccurate solver's.
             if is_factor && !limit.is_other_right && left > limit.clean {
                 continue;

@@ -32,10 +32,10 @@ const PER_FIT: f64 = 1.2;
 /// Multiple of the least error up to which another explanation is as good.
 const AS_WELL: f64 = 1.5;
 /// Minima of a scan that are followed; trials in a decade, and of a range without decades; halvings of a step.
-const FOLLOWED: usize = 3;
+const FOLLOWED: usize = 2;
 const PER_DECADE: f64 = 5.0;
 const TRIALS: usize = 24;
-const HALVINGS: usize = 14;
+const HALVINGS: usize = 11;
 /// What a mistake of a column must gain in a fit.
 const PENALTY: f64 = 1.2;
 /// Most names and alternatives that a sentence offers.
@@ -102,8 +102,12 @@ fn worlds(
         };
         (of(world), mistake)
     };
-    let Some(fit) = &cause.fit else { return vec![found(0.0, 0.0, cause.asked, "", 0)] };
-    let Some(range) = given.span().map(|span| (fit.range)(given, span)) else { return Vec::new() };
+    let Some(fit) = &cause.fit else {
+        return vec![found(0.0, 0.0, cause.asked, "", 0)];
+    };
+    let Some(range) = given.span().map(|span| (fit.range)(given, span)) else {
+        return Vec::new();
+    };
     let is_log = range[0] > 0.0;
     let number = |at: f64| if is_log { exp(at) } else { at };
     let value = |at: f64| left(&of(number(at)), given, in_units);
@@ -147,7 +151,9 @@ pub fn one_time(given: &Given<'_>) -> Option<(f64, f64)> {
 /// Logarithm of the error that a world leaves, the mean of all columns, each as it is or in its best unit and sign: a column
 /// that no world explains does not hide what explains the others.
 fn left(world: &World, given: &Given<'_>, in_units: bool) -> f64 {
-    let Some(predicted) = world.predict(given, &given.times) else { return f64::INFINITY };
+    let Some(predicted) = world.predict(given, &given.times) else {
+        return f64::INFINITY;
+    };
     let of_column = |column: &Column| {
         let itself = column.itself(&column.exact(&predicted));
         let mut least = 1.0_f64;
