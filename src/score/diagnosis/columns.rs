@@ -124,12 +124,6 @@ impl Column {
         self.size(&self.beyond(&held.values, factor), output) / (factor.abs() * size)
     }
 
-    /// A list without its mean.
-    pub fn about_mean(&self, values: &[f64]) -> Vec<f64> {
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        values.iter().map(|value| value - mean).collect()
-    }
-
     /// The factor of a list that fits another one best, at an output or at all.
     pub fn factor(&self, values: &[f64], of: &[f64], output: Option<usize>) -> f64 {
         let (mut both, mut square) = (0.0, 0.0);
@@ -315,4 +309,10 @@ fn picked(state: &SampledState, most: usize) -> Cow<'_, SampledState> {
         surface_displacement: state.surface_displacement,
         ..SampledState::default()
     })
+}
+
+/// A list without its mean.
+pub fn about_mean(values: &[f64]) -> Vec<f64> {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    values.iter().map(|value| value - mean).collect()
 }

@@ -268,7 +268,7 @@ pub const CLOCK: Cause = Cause { said: " at {} × the time", asked: "is k, or ar
     of: |_, own, factor| World { clock: [factor, 0.0], ..own }, is_of_times: true,
     fit: Some(Fit {
         range: |given, [first, last]| [EDGES[0] / given.own.parameters.time_factor(last), EDGES[1] / given.own.parameters.time_factor(first)],
-        names: clocks, asked: is_clock, or_more: " or more: everything has drained before the first time" }), ..CAUSE };
+        names: clocks, asked: is_clock, or_more: " or more: everything has drained before the first time" }) };
 
 /// One state at all outputs.
 #[rustfmt::skip]
@@ -346,22 +346,19 @@ fn is_clock(given: &Given<'_>, factor: f64) -> String {
     } else {
         format!(", or E_oed {}", is_number(soil.oedometric_modulus(), factor, "Pa"))
     };
-    match given.own.parameters.soils.is_empty() {
-        true => format!(
-            "is k {}{or}, or are the times off",
-            is_number(soil.hydraulic_conductivity, factor, "m/s")
-        ),
-        false => format!("is k of each layer {} × that of the problem, or are the times off", shown(factor)),
-    }
+    let k = if given.own.parameters.soils.is_empty() {
+        is_number(soil.hydraulic_conductivity, factor, "m/s")
+    } else {
+        format!("of each layer {} × that of the problem", shown(factor))
+    };
+    format!("is k {k}{or}, or are the times off")
 }
 
 fn is_stiffness(given: &Given<'_>, factor: f64) -> String {
-    match given.own.parameters.soils.is_empty() {
-        true => {
-            format!("is E_oed {}", is_number(given.own.parameters.soil.oedometric_modulus(), factor, "Pa"))
-        }
-        false => "is the stiffness of each layer off".to_owned(),
+    if !given.own.parameters.soils.is_empty() {
+        return "is the stiffness of each layer off".to_owned();
     }
+    format!("is E_oed {}", is_number(given.own.parameters.soil.oedometric_modulus(), factor, "Pa"))
 }
 
 pub fn is_load(factor: f64) -> String {

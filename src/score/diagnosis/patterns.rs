@@ -1,6 +1,6 @@
 //! Patterns of samples, and what a column holds or where its residual is when nothing explains it.
 
-use super::columns::{Column, Field, Given};
+use super::columns::{Column, Field, Given, about_mean};
 use super::readings::Reading;
 use super::search::{FLOOR, Limit, Mistake};
 use super::{NO_MISTAKE, listed, shown};
@@ -54,7 +54,9 @@ fn blank(column: &Column, exact: &[f64], given: &Given<'_>, limit: &Limit) -> Op
     let blank = *wrong.chunk_by(|a, b| a == b).max_by_key(|same| same.len())?.first()?;
     let blanks: Vec<usize> = seen.iter().copied().filter(|at| values[*at] == blank).collect();
     let mut held = column.itself(exact);
-    blanks.iter().for_each(|at| held.values[*at] = blank);
+    for at in &blanks {
+        held.values[*at] = blank;
+    }
     let left = limit.accepts(column, &held, 1.0)?;
     if blanks.len() < 2 || 4 * (seen.len() - blanks.len()) < seen.len() {
         return None;
@@ -190,7 +192,7 @@ pub fn content(column: &Column, given: &Given<'_>) -> Option<String> {
 
 /// What a column that nothing explains is beside one that is right: the same at all outputs, or unlike the exact one.
 pub fn unlike(column: &Column, given: &Given<'_>) -> Option<String> {
-    let (values, exact) = (column.about_mean(&column.values), column.about_mean(&column.exact(&given.exact)));
+    let (values, exact) = (about_mean(&column.values), about_mean(&column.exact(&given.exact)));
     let alike = column.factor(&values, &exact, None) * column.size(&exact, None) / column.size(&values, None);
     let what = match column.stands_still() {
         _ if !Limit::of(column, given).is_other_right => return None,

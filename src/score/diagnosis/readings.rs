@@ -1,6 +1,6 @@
 //! Readings of one column: what it would hold by each row of the table, in each unit and with either sign.
 
-use super::columns::{Column, Field, Given, Held};
+use super::columns::{Column, Field, Given, Held, about_mean};
 use super::hypotheses::{AT_OTHER_TIMES, Need, Number, READINGS, Row, Scale, Varies, is_load};
 use super::search::{Limit, Mistake, minima};
 use super::shown;
@@ -34,6 +34,7 @@ impl<'a> Exact<'a> {
     }
 
     /// A value for every place.
+    #[expect(clippy::unnecessary_wraps, reason = "what a row holds, which rows of other times may not have")]
     pub fn each(&self, value: impl Fn(usize) -> f64) -> Option<Vec<f64>> {
         Some((0..self.own.len()).map(value).collect())
     }
@@ -108,9 +109,9 @@ impl<'a> Exact<'a> {
             (row.holds)(self, number).filter(|values| values.iter().all(|value| value.is_finite()))?;
         let varying = match row.varies {
             Varies::AsHeld => values.clone(),
-            Varies::HeldAboutMean => self.column.about_mean(&values),
+            Varies::HeldAboutMean => about_mean(&values),
             Varies::AsExact => self.own.clone(),
-            Varies::ExactAboutMean => self.column.about_mean(&self.own),
+            Varies::ExactAboutMean => about_mean(&self.own),
         };
         Some(Held { values, varying, floor: 0.0 })
     }
@@ -194,9 +195,12 @@ fn of_row(x: &Exact<'_>, row: &Row, limit: &Limit, [is_own, is_timed]: [bool; 2]
     }
     let is_factor = row.number == Number::Factor;
     let is_unscaled = is_timed || row.needs.contains(&Need::OwnUnit);
-    let is_in_unit = |scale: &&Scale| match scale.is_alone {
-        true => is_own && row.number == Number::Itself,
-        false => scale.asked.is_empty() || !is_unscaled,
+    let is_in_unit = |scale: &&Scale| {
+        if scale.is_alone {
+            is_own && row.number == Number::Itself
+        } else {
+            scale.asked.is_empty() || !is_unscaled
+        }
     };
     let scales = x.column.scales.iter().filter(is_in_unit);
     let signs = if is_unscaled { &[1.0][..] } else { &[1.0, -1.0] };

@@ -31,10 +31,11 @@ const PER_MISTAKE: f64 = 1.1;
 const PER_FIT: f64 = 1.2;
 /// Multiple of the least error up to which another explanation is as good.
 const AS_WELL: f64 = 1.5;
-/// Minima of a scan that are followed; trials in a decade, and of a range without decades; halvings of a step.
+/// Minima of a scan that are followed; trials in a decade, and at least and at most; halvings of a step.
 const FOLLOWED: usize = 2;
 const PER_DECADE: f64 = 5.0;
-const TRIALS: usize = 24;
+const TRIALS: usize = 16;
+const MOST_TRIALS: usize = 200;
 const HALVINGS: usize = 11;
 /// What a mistake of a column must gain in a fit.
 const PENALTY: f64 = 1.2;
@@ -112,7 +113,9 @@ fn worlds(
     let number = |at: f64| if is_log { exp(at) } else { at };
     let value = |at: f64| left(&of(number(at)), given, in_units);
     let [low, high] = if is_log { range.map(ln) } else { range };
-    let trials = if is_log { (PER_DECADE * (high - low) / ln(10.0)).ceil() as usize } else { TRIALS };
+    let wanted = PER_DECADE * (high - low) / ln(10.0);
+    let trials =
+        (TRIALS..MOST_TRIALS).find(|trials| !is_log || *trials as f64 >= wanted).unwrap_or(MOST_TRIALS);
     let names = (fit.names)(given);
     let others = [left(base, given, in_units), value(low), value(high)];
     let of_minimum = |(at, least): (f64, f64)| {
@@ -333,9 +336,9 @@ pub fn explanation(given: &Given<'_>, whole: &Given<'_>, are_all_outputs: bool) 
     for (cause, in_units) in
         [false, true].into_iter().flat_map(|units| causes.iter().map(move |cause| (cause, units)))
     {
-        let is_wanted = |best: &Explanation| match in_units {
-            false => !best.is_enough(),
-            true => cause.is_of_times && (best.open > 0 || best.mistakes > 1),
+        let is_wanted = |best: &Explanation| {
+            let is_open = best.open > 0 || best.mistakes > 1;
+            if in_units { cause.is_of_times && is_open } else { !best.is_enough() }
         };
         let is_fitted = !is_any_right && all.first().is_none_or(is_wanted);
         let is_of_pass = if cause.fit.is_some() { is_fitted } else { !in_units };

@@ -635,7 +635,8 @@ fn every_change_is_named_of(kind: ReferenceKind) {
     for (place, change) in changes().into_iter().enumerate() {
         let turn = number + place;
         for (columns, noise) in [(0, 0.0), others[turn % 4]] {
-            if !place.is_multiple_of(if (columns, noise) == (0, 0.0) { every } else { every_other }) {
+            let is_first = (columns, noise) == (0, 0.0);
+            if !(is_whole(&change) && (is_first || place.is_multiple_of(every_other))) {
                 continue;
             }
             let Some(told) = told_of(&scene, &change, columns, noise) else {
