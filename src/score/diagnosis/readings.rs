@@ -227,10 +227,10 @@ fn of_row(x: &Exact<'_>, row: &Row, limit: &Limit, [is_own, is_timed]: [bool; 2]
                 asked[0] = format!("{}, or {}", is_load(number), asked[0]);
             }
             let what = filled(row.said);
-            let said = if factor == 1.0 {
-                format!("matches {what}")
-            } else {
-                format!("is {} × {what}", shown(factor))
+            let said = match factor {
+                1.0 if is_factor => format!("is {what}"),
+                1.0 => format!("matches {what}"),
+                _ => format!("is {} × {what}", shown(factor)),
             };
             let is_alone = scale.is_alone || is_factor || row.needs.contains(&Need::OtherRight);
             let of = if is_alone { x.column.name } else { "" };
