@@ -162,7 +162,7 @@ impl<'a> Scene<'a> {
         let own_time = |output: &Output<'a>| {
             let given = Given::of(&self.own, self.mapping, std::slice::from_ref(output), SAMPLES[1])?;
             let (time, _) = search::one_time(&given).filter(|(_, left)| *left <= AT_ITS_TIME)?;
-            Some(shown(parameters.time_factor(time)))
+            Some(digits(parameters.time_factor(time)))
         };
         let times: Option<Vec<String>> = outputs.iter().map(own_time).collect();
         let [second, third] = [first + 1.0, first + 2.0];
@@ -252,8 +252,14 @@ fn listed(numbers: impl Iterator<Item = f64>) -> String {
 }
 
 /// A number to three digits: a fit gives no more.
-fn shown(number: f64) -> String {
-    short(format!("{number:.2e}").parse().unwrap_or(number)).replace('-', "−")
+fn digits(number: f64) -> String {
+    short(format!("{number:.2e}").parse().unwrap_or(number))
+}
+
+/// A factor in words: −1.00, 0.001, 60.
+fn shown(factor: f64) -> String {
+    let digits = if factor.abs() == 1.0 { format!("{factor:.2}") } else { digits(factor) };
+    digits.replace('-', "−")
 }
 
 #[cfg(test)]

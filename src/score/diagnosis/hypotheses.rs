@@ -5,8 +5,8 @@
 
 use super::columns::{Column, Field, Given};
 use super::readings::Exact;
-use super::shown;
 use super::world::{EDGES, Ends, World};
+use super::{digits, shown};
 use crate::import::mapping::units::{StressUnit, TimeUnit};
 use oedometer_exact::{Drainage, Reference, ReferenceKind};
 use oedometer_soil::elementary::powi;
@@ -335,7 +335,7 @@ pub const WORLDS: &[Cause] = &[
 
 /// What to ask of a number times another one, in a unit.
 fn is_number(number: f64, factor: f64, unit: &str) -> String {
-    format!("{} {unit} for {}", shown(factor * number), shown(number))
+    format!("{} {unit} for {}", digits(factor * number), digits(number))
 }
 
 fn is_clock(given: &Given<'_>, factor: f64) -> String {

@@ -4,7 +4,6 @@ use crate::case::keys::MOST_CELLS;
 use crate::case::solver::DIGEST_DIGITS;
 use crate::case::{Attached, Case, SolverName, Tier};
 use crate::import::mapping::Mapping;
-use crate::import::runs::files_of;
 use crate::study::check::Checker;
 use crate::study::diagnostic::one_of;
 use crate::study::file::{ResultTable, SolverTable, StudyFile, StudySource};
@@ -389,11 +388,10 @@ fn digest_of_result(table: &ResultTable, files: &[String], cells: &[usize], fold
     for file in files {
         digest.take("name", file);
         for cells in cells {
+            // What a pattern matches is in the digest of the record.
             let given = folder.join(file.replace("{cells}", &cells.to_string()));
-            let all = files_of(&[given]).unwrap_or_default().concat();
-            let curve = curve.iter().filter_map(|curve| Some(all.first()?.parent()?.join(curve)));
-            let read = all.iter().flat_map(|path| with_named(path)).chain(curve);
-            for path in read.filter(|path| path.is_file()) {
+            let curve = curve.iter().filter_map(|curve| Some(given.parent()?.join(curve)));
+            for path in with_named(&given).into_iter().chain(curve).filter(|path| path.is_file()) {
                 digest.take("file", &digest_of_file(&path));
             }
         }

@@ -263,7 +263,7 @@ fn what_seems_to_be_wrong_with_a_result_stands_in_the_check_and_in_the_report() 
     // The factor on the permeability is the factor of the time; mm of a displacement have none.
     for (permeability, factor, expected) in [
         (1.0, 1.0, None),
-        (1.02, 1.0, Some("at 1.02 × the time: is k 1.02e-4 m/s for 1e-4 (c_v ")),
+        (1.02, 1.0, Some("at 1.02 × the time: is k 1.02e-4 m/s for 1e-4, or are")),
         (1.0, 1e3, Some("your u_y is 1000 × the exact one: is it in mm where m is declared?")),
     ] {
         let mut text = "t,y,p,u_y\n".to_owned();

@@ -96,7 +96,7 @@ fn a_slab_and_a_column_in_the_plane_are_scored_without_a_grid_that_fits_them() {
     fs::write(folder.path().join("turned.csv"), turned).expect("a file");
     let told =
         call(folder.path(), &["score", "turned.csv", "--scene", "mandel", "--without", "displacement"]);
-    assert!(told.err.contains("are the axes exchanged?"), "{}", told.err);
+    assert!(told.err.contains("are the axes exchanged (of `mandel`"), "{}", told.err);
     fs::write(folder.path().join("slab.csv"), text).expect("a file");
     let told = call(folder.path(), &["score", "slab.csv", "--scene", "mandel", "--format", "csv"]);
     let found = values(&told, ",pressure,points,l2,");

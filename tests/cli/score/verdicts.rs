@@ -405,12 +405,12 @@ fn mistakes_that_the_numbers_show_are_named_and_others_are_not() {
     for (rows, told_of) in [
         (
             changed(&|row| Row { pressure: -row.pressure, ..*row }),
-            "your p is −1 × the exact one: is the sign",
+            "your p is −1.00 × the exact one: is the sign",
         ),
         (changed(&|row| Row { pressure: 1e-3 * row.pressure, ..*row }), "is it in kPa where Pa is declared?"),
         (
             changed(&|row| Row { pressure: row.pressure + 9810.0 * (1.0 - row.height), ..*row }),
-            "by a constant gradient of 9810 Pa/m: is the hydrostatic part left in?",
+            "with the weight of the water: is the hydrostatic part left in?",
         ),
         (changed(&|row| Row { time: row.time / 60.0, ..*row }), "are times in min where s is declared?"),
         (

@@ -87,7 +87,7 @@ fn every_mistake_is_named_in_good_and_in_mediocre_results() {
             let told = told(&states);
             assert!(told.len() == 1 && told[0].contains(words), "{off} {words}: {told:?}");
         };
-        one(changed(off, |state| scale(&mut state.pressure, -1.0)), "your p is −1 × the exact one");
+        one(changed(off, |state| scale(&mut state.pressure, -1.0)), "your p is −1.00 × the exact one");
         one(
             changed(off, |state| scale(&mut state.pressure, 1e-3)),
             "your p is 0.001 × the exact one: is it in kPa where Pa is declared",
@@ -198,8 +198,7 @@ fn in_a_layer_the_other_end_may_look_like_the_other_sign() {
         state.pressure.push(fields.pressure);
     }
     let told = diagnosis(&layer, ReferenceKind::CosineLayer, &[state], &mapping(PLANE_CONVENTION));
-    let sign =
-        "your p is −1 × the exact one: is the sign declared wrongly, or does `x` count from the other end?";
+    let sign = "your p is −1.00 × the exact one: is the sign declared wrongly, or does `x` count from the other end?";
     assert_eq!(told, [sign]);
 }
 
@@ -275,7 +274,7 @@ fn another_stress_in_the_place_of_the_pressure_is_named() {
         );
         only(
             &changed(off, |state| state.pressure.clone_from(&state.effective_stress)),
-            &["your p is −1 × the exact effective stress: is it given instead of the pore pressure?"],
+            &["your p is −1.00 × the exact effective stress: is it given instead of the pore pressure?"],
         );
         let total = |state: &SampledState| -> Vec<f64> {
             state.pressure.iter().zip(&state.effective_stress).map(|(p, s)| p - s).collect()
@@ -427,7 +426,7 @@ fn two_or_three_wrong_units_signs_and_ends_together_are_named() {
                 state.initial_height.iter_mut().for_each(|height| *height = 1.0 - *height);
             }),
             &[
-                "your p is −1 × the exact one upside down at 60 × the time: is the sign declared wrongly, and is `y` counted \
+                "your p is −1.00 × the exact one upside down at 60 × the time: is the sign declared wrongly, and is `y` counted \
                  from the other end",
             ],
         );

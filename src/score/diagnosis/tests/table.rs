@@ -264,5 +264,5 @@ fn stress_in_cells_beside_nodal_pressure_is_diagnosed() {
         told(&states)
     };
     assert_eq!(told(1.0), [""; 0]);
-    assert_eq!(told(-1.0), ["your effective_stress is −1 × the exact one: is the sign declared wrongly?"]);
+    assert_eq!(told(-1.0), ["your effective_stress is −1.00 × the exact one: is the sign declared wrongly?"]);
 }
