@@ -407,12 +407,12 @@ fn mistakes_that_the_numbers_show_are_named_and_others_are_not() {
             changed(&|row| Row { pressure: -row.pressure, ..*row }),
             "your p is −1.00 × the exact one: is the sign",
         ),
-        (changed(&|row| Row { pressure: 1e-3 * row.pressure, ..*row }), "is it in kPa where Pa is declared?"),
+        (changed(&|row| Row { pressure: 1e-3 * row.pressure, ..*row }), "is it in kPa where Pa is declared"),
         (
             changed(&|row| Row { pressure: row.pressure + 9810.0 * (1.0 - row.height), ..*row }),
             "with the weight of the water: is the hydrostatic part left in?",
         ),
-        (changed(&|row| Row { time: row.time / 60.0, ..*row }), "are times in min where s is declared?"),
+        (changed(&|row| Row { time: row.time / 60.0, ..*row }), "are times in min where s is declared"),
         (
             changed(&|row| Row { height: 1.0 - row.height, ..*row }),
             "upside down: is `y` counted from the other",
