@@ -125,11 +125,7 @@ fn factors_of(moments: &Moments, volume: f64) -> [f64; 3] {
 impl<const D: usize> FilledCells<D> {
     /// Cell of a place; of one on the outer edge, the cell within.
     fn home(&self, place: &Vector<D>) -> usize {
-        let mut index = self.grid.cell_of(place);
-        for d in 0..D {
-            index[d] = index[d].clamp(GHOST_LAYERS, GHOST_LAYERS + self.grid.cells[d] - 1);
-        }
-        self.grid.flat_cell(&index)
+        self.grid.flat_cell(&self.grid.cell_of(place))
     }
 
     /// Cells of the body.
