@@ -191,7 +191,7 @@ impl FamilyAnswer {
     pub fn words(&self) -> String {
         let words = FAMILIES.iter().find(|(name, _)| *name == self.family);
         let words = words.map_or(self.family.as_str(), |(_, words)| words);
-        if self.group == Group::Total { "… mesh may follow".to_owned() } else { words.to_owned() }
+        if self.group == Group::Total { "… mesh follows".to_owned() } else { words.to_owned() }
     }
 }
 
@@ -240,7 +240,7 @@ fn group_answers(race: &RaceFindings) -> Vec<GroupAnswer> {
         let holds = first.holds;
         let all = [
             (holds.time, "the output"),
-            (holds.budget, "the budget"),
+            (holds.budget, "the work allowed"),
             (holds.tolerance, "the tolerance"),
             (holds.read_out, "the sampling"),
         ];
@@ -346,9 +346,9 @@ fn family_answers(race: &RaceFindings, group: Group, read_out: ReadOut) -> Vec<F
 /// A reason with what was measured.
 pub fn reason_words(reason: Reason) -> String {
     match reason {
-        Reason::Budget(order) => format!("budget (order {})", number::fixed(order, 1)),
+        Reason::Budget(order) => format!("too costly (order {})", number::fixed(order, 1)),
         Reason::Plateau(height) => format!("plateau ({})", number::percent(height)),
-        other => other.word().to_owned(),
+        other => other.shown().to_owned(),
     }
 }
 
@@ -436,10 +436,12 @@ pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
         ReadOut::Points => {
             let [column, plane] = MOST_WORK.map(number::number);
             format!(
-                "Farther right: dearer; equal marks are stacked. *Budget*: the error still fell on the finest mesh allowed, of {column} s \
-                 of work ({plane} s in the plane); *plateau*: it no longer fell; *locks*: too little settlement; *inaccurate*: large \
-                 errors that do not fall, or a run that ends early. Work: {COUNTED_WORK}. Cells: over the height, or under the \
-                 footing. Step: of the elapsed time t or of the critical step t_c."
+                "Farther right: dearer; equal marks are stacked. Where nothing moves, *TL-* changes nothing. *Too costly*: the error \
+                 still fell on the finest mesh allowed, of {column} s of work ({plane} s in the plane); *plateau*: it no longer fell; \
+                 *locks*: too little settlement; *inaccurate*: large errors that do not fall, or a run that ends early; *n/a*: does not \
+                 apply. {}Work: {COUNTED_WORK}. Cells: over the height, or under the footing. Step: of the elapsed time t or of the \
+                 critical step t_c.",
+                unmarked(race, &names, &terms)
             )
         }
         ReadOut::Centres => {
@@ -454,11 +456,20 @@ pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
     Figure::new(format!("race-problems-{}", read_out.name()), chart, caption)
 }
 
+/// The cheapest methods that have no mark.
+fn unmarked(race: &RaceFindings, marked: &[&str], terms: &Terms) -> String {
+    let best = race.situations.iter().filter_map(|one| cheapest(one, terms, |_| true));
+    let best = distinct(best.map(|(entry, _)| entry.contender.as_str()));
+    let named: Vec<String> =
+        best.iter().filter(|one| !marked.contains(one)).map(|one| format!("`{one}`")).collect();
+    if named.is_empty() { String::new() } else { format!("Without a mark: {}. ", named.join(", ")) }
+}
+
 /// The words of a problem.
 fn plotted_row(situation: &Situation, methods: &[&str], terms: &Terms) -> ChartRow {
     let without = methods.iter().map(|method| {
         let reason = entry_of(situation, method).map(|entry| situation.reason(entry, terms));
-        reason.unwrap_or(Some(Reason::NotRun)).map_or("", Reason::word).replace("not applicable", "n/a")
+        reason.unwrap_or(Some(Reason::NotRun)).map_or("", Reason::shown).to_owned()
     });
     let best = cheapest(situation, terms, |_| true);
     let arrival = best.and_then(|(entry, cost)| Some((entry, cost, situation.arrival(entry, terms)?)));
@@ -505,6 +516,13 @@ pub fn family_table(facts: &Facts, read_out: ReadOut) -> Table {
     let mut families: Vec<&FamilyAnswer> =
         facts.families.iter().filter(|one| one.read_out == read_out).collect();
     families.sort_by_key(|one| place_of(&one.family));
+    // The method that the headline names may tie with the one named here.
+    let following = facts.leaders.iter().find(|one| one.read_out == read_out);
+    let following = following.and_then(|one| Some(one.following.as_ref()?.method.as_str()));
+    let tied = families.iter().find_map(|one| {
+        let method = one.methods.iter().skip(1).find(|method| Some(method.as_str()) == following)?;
+        Some(format!(", `{method}` in {} among them", letter_of(&one.family)))
+    });
     let rows = families.into_iter().map(|one| {
         let milliseconds = |work: f64| number::short(1e3 * work);
         let work = one.work.map(|[least, most]| {
@@ -527,5 +545,8 @@ pub fn family_table(facts: &Facts, read_out: ReadOut) -> Table {
         rows,
     )
     .file(format!("families-{}", read_out.name()))
-    .note("ties: other methods that are as good; ms: work of the method named, easiest to hardest problem")
+    .note(format!(
+        "ties: other methods that are as good{}; ms: work of the method named, easiest to hardest problem",
+        tied.unwrap_or_default()
+    ))
 }

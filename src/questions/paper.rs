@@ -6,7 +6,7 @@ use crate::case::{Case, Quantity, Sample};
 use crate::judge::study_results::StudyResults;
 use crate::questions::finding::{Finding, Place, Question};
 use crate::questions::profiles::{consolidation, isochrones, largest_error, off_theory};
-use crate::questions::published_equations::{LARGE_STRAIN_LOAD, PublishedEquations, QUOTED_CELLS};
+use crate::questions::published_equations::{END, LARGE_STRAIN_LOAD, PublishedEquations, QUOTED_CELLS};
 use crate::questions::words;
 use crate::record::{Record, Status};
 use crate::render::chart::Size;
@@ -89,6 +89,8 @@ fn table_of_equations(printed: &PublishedEquations) -> Table {
     let rows = rows.map(|[time, settlement, pressure]| {
         vec![Cell::Number(time), Cell::Percent(settlement), Cell::Percent(pressure)]
     });
+    let settled = Cell::Percent(printed.final_settlement);
+    let rows = rows.chain([vec![Cell::Number(END), settled, Cell::missing("no pressure is left")]]);
     let header = "> T_v | > settlement, difference | > pressure, relative L_2 difference";
     Table::of(
         "The equations as printed, before any discretisation, against Xie & Leo's",
@@ -96,7 +98,7 @@ fn table_of_equations(printed: &PublishedEquations) -> Table {
         rows,
     )
     .file("printed-equations")
-    .note("porosity-dependent law, constant porosity gradient")
+    .note("porosity-dependent law, constant porosity gradient; the last row is final: nothing moves any more")
 }
 
 /// The size of one figure of four in a row, which a phone shows too.
@@ -283,6 +285,7 @@ mod tests {
             ["0.0079 | 7.85 % | 2.79 %", "0.1 | 7.67 % | 6.90 %"],
             "settlement, then pressure"
         );
+        assert_eq!(shown(equations)[6], "10 | -6.94 % | –", "the final one that the sentence quotes");
         let told = found.sentence().expect("a sentence");
         assert!(
             told.contains("on 10 cells the pressure of `GC-SRI-patch` is within 3.00 % of them"),

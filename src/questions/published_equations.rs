@@ -16,7 +16,7 @@ pub const LARGE_STRAIN_LOAD: f64 = 200e3;
 /// Output times, as time factors.
 const TIMES: [f64; 6] = [0.0079, 0.1, 0.2, 0.4, 0.85, 1.0];
 /// A time factor at which nothing moves any more.
-const END: f64 = 10.0;
+pub const END: f64 = 10.0;
 /// Places over the height at which pressures are compared.
 const PLACES: usize = 200;
 

@@ -183,6 +183,15 @@ impl Reason {
         }
     }
 
+    /// Its word on pages, where a budget would read as cheap.
+    pub fn shown(self) -> &'static str {
+        match self {
+            Self::Budget(_) => "too costly",
+            Self::NotApplicable => "n/a",
+            other => other.word(),
+        }
+    }
+
     /// The order or the height that was measured.
     pub fn value(self) -> Option<f64> {
         match self {

@@ -1,7 +1,7 @@
 //! Small multiples: a figure with more series than colours becomes panels with one scale. Each panel has a few series in
 //! colour, over the others in grey.
 
-use crate::case::grouping::grouped;
+use crate::case::grouping::{distinct, grouped};
 use crate::render::chart::draw::ends;
 use crate::render::chart::svg::Px;
 use crate::render::chart::{Chart, Series, Style, slots};
@@ -33,13 +33,11 @@ impl Chart {
             return Vec::new();
         }
         let shown = by_method(&names);
-        let panel = |(number, names_shown): (usize, &Vec<&str>)| {
-            self.panel(&names, names_shown, (number + 1, shown.len()))
-        };
+        let panel = |(number, names_shown): (usize, &Vec<&str>)| self.panel(&names, names_shown, number);
         shown.iter().enumerate().map(panel).collect()
     }
 
-    fn panel(&self, names: &[&str], shown: &[&str], (number, of): (usize, usize)) -> Self {
+    fn panel(&self, names: &[&str], shown: &[&str], number: usize) -> Self {
         let (x, y) = ends(self);
         let is_shown = |name: &str| shown.contains(&name);
         let context = self
@@ -57,7 +55,10 @@ impl Chart {
         let mut panel = self.clone();
         panel.triangles.retain(|triangle| is_shown(&triangle.beside));
         panel.series = series;
-        panel.title = format!("{}, {number} of {of}", self.title);
+        // The statement stands once, above the first; the others say whose lines they colour.
+        if number > 0 {
+            panel.title = methods_in_words(shown);
+        }
         panel.x = panel.x.between(x.low, x.high);
         panel.y = panel.y.between(y.low, y.high);
         panel.size.width = PANEL_WIDTH;
@@ -68,6 +69,16 @@ impl Chart {
 /// The method that a label begins with.
 fn method_of(name: &str) -> &str {
     name.split_once(", ").map_or(name, |(method, _)| method)
+}
+
+/// The methods of a panel, the first and the last of more than two.
+fn methods_in_words(names: &[&str]) -> String {
+    match distinct(names.iter().map(|name| method_of(name)))[..] {
+        [one] => one.to_owned(),
+        [one, other] => format!("{one} and {other}"),
+        [first, .., last] => format!("{first} to {last}"),
+        [] => String::new(),
+    }
 }
 
 /// Names in panels of nearly the same number. The series of a method stay together, unless they alone are too many.
@@ -155,7 +166,8 @@ mod tests {
         assert_eq!(places, ["x=\"0\" y=\"0\" wid", "x=\"4500\" y=\"0\" ", "x=\"0\" y=\"3200\" "]);
         assert_eq!(side_by_side(&[part(300.0, "a")], SIDE_BY_SIDE).0, (450.0, 300.0));
         let svg = whole.svg().expect("it is drawn");
-        assert_eq!(svg.matches(" of 3</text>").count(), 3);
+        let titles: Vec<&str> = panels.iter().map(|panel| panel.title.as_str()).collect();
+        assert_eq!(titles, ["E", "method 5 to method 9", "method 10 to method 14"]);
         assert!(svg.contains("<title>method 0</title>") && svg.contains("<title>method 14</title>"));
     }
 
@@ -169,7 +181,7 @@ mod tests {
         assert_eq!(panels.iter().map(Vec::len).collect::<Vec<_>>(), [7, 2]);
         let mut whole = chart(0);
         whole.series.extend(many.iter().map(|name| Series::new(*name, vec![(0.1, 1.0)])));
-        assert_eq!(whole.panels()[0].title, "E, 1 of 2");
+        assert_eq!(whole.panels()[1].title, "A");
         for (place, series) in whole.series.iter_mut().enumerate() {
             series.slot = Some(place % 3);
         }

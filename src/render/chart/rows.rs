@@ -40,6 +40,8 @@ const SMALL: Font = Font { size: 10.5, ..FONT };
 const LEGEND: f64 = 20.0;
 const ROW: f64 = 21.0;
 const BETWEEN_FAMILIES: f64 = 6.0;
+/// Height of the lines that say what stands below the markers.
+const NARROW_HEADS: f64 = 32.0;
 const RADIUS: f64 = 4.6;
 /// Markers nearer than this share the height of their row.
 const NEAR: f64 = 8.0;
@@ -113,7 +115,7 @@ pub(super) fn elements(chart: &Chart, rows: &ChartRows, is_narrow: bool) -> Resu
     let places = if is_narrow { Places::narrow() } else { Places::wide(chart, rows) };
     let entries = legend(chart, rows, &looks, places.width);
     let legend_height = entries.last().map_or(0.0, |(at, ..)| at.1 + LEGEND);
-    let head = legend_height + if is_narrow { 34.0 } else { 40.0 };
+    let head = legend_height + if is_narrow { 34.0 + NARROW_HEADS } else { 40.0 };
     let tops = tops(rows, head, is_narrow);
     let bottom = tops.last().copied().unwrap_or(head);
     let size = (places.width, (bottom + PAD).ceil());
@@ -199,6 +201,13 @@ fn heads(
         write(area, &label, (x, head - 8.0), Font { colour: QUIET.light, ..SMALL }, HPos::Center)?;
     }
     if is_narrow {
+        let below = [
+            format!("below each scale: {}", rows.heads.join(" · ")),
+            format!("below that: {}", rows.without),
+        ];
+        for (words, y) in below.iter().zip([upper - 32.0, upper - 16.0]) {
+            write(area, words, (PAD, y), SMALL, HPos::Left)?;
+        }
         return Ok(());
     }
     write(area, &rows.without, (places.gutter.0, upper), STRONG, HPos::Left)?;
@@ -257,7 +266,7 @@ fn narrow_row(
     {
         draw_marker(area, (x, line_at(3.0)), look.marker.unwrap_or(series), 3.8, look.colour)?;
         write(area, word, (x + 8.0, line_at(3.0)), Font { colour: look.colour, ..SMALL }, HPos::Left)?;
-        x += 8.0 + SMALL.size * width(word) + 12.0;
+        x += 8.0 + SMALL.size * width(word) + 7.0;
     }
     Ok(())
 }
@@ -339,6 +348,9 @@ mod tests {
         assert!(wide.contains(">b</text>") && wide.contains(">G</text>") && narrow.contains(">G b</text>"));
         assert!(wide.contains(">MPM</text>") && narrow.contains(">MPM · 8 cells</text>"), "{narrow}");
         assert!(narrow.contains(&format!("width=\"{NARROW}\"")), "{narrow}");
+        for head in [">below each scale: cheapest · cells</text>", ">below that: does not arrive</text>"] {
+            assert!(narrow.contains(head), "{head}: {narrow}");
+        }
         // Two equal points stand above each other; a lone one lies on its line.
         let rows = chart().rows.expect("rows");
         let tops = tops(&rows, 0.0, false);

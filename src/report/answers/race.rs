@@ -79,19 +79,15 @@ pub(crate) fn section(race: &RaceFindings, answers: &Answers<'_>) -> Result<Sect
 fn trust(race: &RaceFindings, answers: &Answers<'_>) -> Vec<String> {
     let checks = || answers.studies.iter().map(|one| &one.check);
     let mut points = vec![format!(
-        "{} of {} [expectations](#expected) met; the benchmark's numbers are guarded by golden values, not \
-         by expectations",
+        "{} of {} [expectations](#expected) met: errors, orders and ratios, mostly against exact solutions that a \
+         second method confirms; golden values guard the benchmark's numbers only against change",
         checks().map(StudyCheck::met).sum::<usize>(),
         checks().map(|check| check.judgements.len()).sum::<usize>()
     )];
-    let printed = answers.to("paper").and_then(|paper| paper.facts["printed_settlement"].as_f64());
-    points.extend(printed.map(|off| {
-        format!(
-            "with the paper's equations as printed the final settlement is {:+.1} % off Xie & Leo's: [the \
-             audit](#paper)",
-            100.0 * off
-        )
-    }));
+    let off = "with the paper's equations as printed the final settlement is {{ printed_settlement|signed_percent }} \
+               off Xie & Leo's: [the audit](#paper)";
+    let printed = answers.to("paper").filter(|paper| paper.facts["printed_settlement"].is_number());
+    points.extend(printed.and_then(|paper| sentence::filled(off, &paper.facts).ok()));
     if answers.to("peers").is_some() {
         points.push("other programs solve [the same column](#peers)".to_owned());
     }
@@ -301,7 +297,7 @@ fn matrix(situations: &[Situation], read_out: ReadOut) -> Table {
             let (shade, words) = match (cost.zip(least), situation.reason(entry, &terms)) {
                 (Some((cost, least)), _) => (Shade::of_ratio(cost / least), number::short(1e3 * cost)),
                 (_, Some(Reason::NotApplicable)) => (Shade::Empty, "–".to_owned()),
-                (_, reason) => (Shade::Failed, reason.map_or("", Reason::word).to_owned()),
+                (_, reason) => (Shade::Failed, reason.map_or("", Reason::shown).to_owned()),
             };
             let title = match (&arrival, &entry.refused) {
                 (Some(one), _) => format!("{}: {} cells, {}", entry.contender, one.cells, one.step),
