@@ -6,6 +6,7 @@
 //!
 //! | crate | what it is |
 //! | :-- | :-- |
+//! | `oedometer-wording` | how numbers, times and names of choices are written and said |
 //! | `oedometer-soil` | material, stress–strain laws, continuity; elementary functions with the same bits on every machine |
 //! | `oedometer-exact` | exact solutions with bounds on their own errors ([`exact`]) |
 //! | `oedometer-problem` | plain data between scenes and solvers: a problem, methods, integrators, steps, and what a run leaves |
@@ -13,8 +14,9 @@
 //! | `oedometer-scenes` | the physical problems by name, which solver they have unknown |
 //! | `oedometer-convergence` | numbers only: series, orders, fits, classes, uncertainty |
 //! | `oedometer-formats` | files of other programs, each format read into one form |
-//! | `oedometer-case` | the waist: a case as plain data with its inputs, hash and label; what solves it ([`Solver`]), and what that leaves ([`Outcome`]) |
-//! | `oedometer-foreign` | other programs as solvers: case file, processes, mapping files, results turned into samples; TOML with mistakes at their places |
+//! | `oedometer-case` | what scenes, solvers and records share: a case as plain data with its inputs, hash and label; what solves it ([`Solver`]), and what that leaves ([`Outcome`]) |
+//! | `oedometer-input` | what people type: TOML with every mistake at its place, units, which key is meant |
+//! | `oedometer-foreign` | other programs as solvers: case file, processes, mapping files, results turned into samples |
 //! | `oedometer` | the harness: what follows |
 //!
 //! Folders of `src/`, each of which uses only those above it (`src/tests/source_order.rs`):

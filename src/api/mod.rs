@@ -20,7 +20,7 @@ use crate::study::solver::Preset;
 use crate::study::synonyms::read_as;
 use clap::ValueEnum;
 use oedometer_exact::reference::ReferenceKind;
-use oedometer_exact::{AddedKey, ShelfProblem};
+use oedometer_exact::{AddedKey, TextbookProblem};
 use oedometer_formats::input_file;
 use oedometer_scenes::Scene;
 use std::path::PathBuf;
@@ -31,8 +31,8 @@ use std::path::PathBuf;
 /// When no solution has the name: lists the names.
 pub fn scene_of(solution: &str) -> Result<(ReferenceKind, &'static Scene), ApiError> {
     let kind: ReferenceKind = read_as(solution).parse().map_err(|_| {
-        let shelf = ShelfProblem::ALL.map(ReferenceKind::Shelf);
-        let names: Vec<&str> = ReferenceKind::ALL.iter().chain(&shelf).map(|kind| kind.name()).collect();
+        let textbook = TextbookProblem::ALL.map(ReferenceKind::Textbook);
+        let names: Vec<&str> = ReferenceKind::ALL.iter().chain(&textbook).map(|kind| kind.name()).collect();
         let known = names.join(", ");
         ApiError::UnknownName(format!("there is no exact solution `{solution}`; there are {known}"))
     })?;
@@ -172,7 +172,8 @@ mod tests {
         let told = dotted_key("terzagi", "load").expect_err("no such problem").to_string();
         let start = "there is no exact solution `terzagi`; there are terzaghi, terzaghi-incompressible, ";
         assert!(
-            told.starts_with(start) && told.ends_with(ShelfProblem::ALL[ShelfProblem::ALL.len() - 1].name()),
+            told.starts_with(start)
+                && told.ends_with(TextbookProblem::ALL[TextbookProblem::ALL.len() - 1].name()),
             "{told}"
         );
         for (solution, scene) in
@@ -215,7 +216,7 @@ mod tests {
             let found = exact::exact(scene, &[0.1], &[], &[0.5], &[format!("{key}={value}")]);
             assert!(found.is_ok() || scene == "terzaghi" || scene == "xie-leo", "{scene}: {found:?}");
         }
-        // A key of a problem of the shelf is that problem's alone.
+        // A key of a textbook problem is that problem's alone.
         assert_eq!(dotted_key("seabed", "period").expect("a key"), "wave.period");
         for problem in ["davis-raymond", "terzaghi"] {
             assert!(dotted_key(problem, "period").is_err(), "{problem}");

@@ -5,7 +5,7 @@ use crate::case::work_estimate::estimated_seconds;
 use crate::case::{Case, Task, Tier};
 use crate::study::check::Study;
 use oedometer_problem::integrator::IntegratorKind;
-use oedometer_soil::wording::{count_of, duration};
+use oedometer_wording::{count_of, duration};
 
 /// Longest estimated time of a case, s, unless the study's `case_seconds` allows more: a week.
 pub const LONGEST_CASE: f64 = 7.0 * 86400.0;

@@ -7,8 +7,8 @@ use crate::measure::record_checks::complaints;
 use crate::record::Record;
 use crate::record::calibration::cost_of;
 use crate::record::race_errors::{ARRIVED, LOOSEST, ROUGH, ReadOut, RunErrors, SMALLEST};
-use crate::record::reached::reached;
 use crate::study::check::Study;
+use oedometer_convergence::reached;
 use oedometer_soil::elementary;
 use std::collections::BTreeMap;
 

@@ -9,7 +9,7 @@ use crate::campaign::taken_over::TakenOver;
 use crate::case::outcome::Standing;
 use crate::case::work_estimate::work_of_seconds;
 use crate::case::{Case, Tier};
-use crate::record::whole_file::StoreError;
+use crate::record::atomic_file::StoreError;
 use crate::record::{Found, Origins, Provenance, Record, RecordStore, Status};
 use crate::study::check::Study;
 use oedometer_exact::exact_error::ExactError;

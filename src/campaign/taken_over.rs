@@ -1,7 +1,7 @@
 //! Results of other programs that a run takes over from an earlier one, and by what these are known.
 
 use crate::record::Record;
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 
 /// Cases of a sentence before the rest is only counted.
 const MOST_CASES: usize = 12;

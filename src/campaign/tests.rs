@@ -9,7 +9,7 @@ use crate::campaign::shares::{Parting, shares_of};
 use crate::case::outcome::{Course, Solver};
 use crate::case::work_estimate::estimated_work;
 use crate::case::{Case, Task, Tier};
-use crate::record::whole_file::StoreError;
+use crate::record::atomic_file::StoreError;
 use crate::record::{Provenance, Record, RecordStore, Status, WallSample};
 use crate::study::check::Study;
 use crate::study::file::StudySource;

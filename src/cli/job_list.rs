@@ -8,7 +8,7 @@ use crate::cli::output::say;
 use crate::record::Record;
 use crate::record::store::RecordStore;
 use crate::study::check::Study;
-use oedometer_soil::wording::{count_of, duration};
+use oedometer_wording::{count_of, duration};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

@@ -8,7 +8,7 @@
 //! and other targets (a terminal, a pipe, `/dev/stdout`) are appended to.
 
 use crate::cli::exit::{Ended, Exit};
-use crate::record::whole_file::write_whole;
+use crate::record::atomic_file::write_atomically;
 use crate::render::escape::{csv_field, document};
 use crate::render::table::Table;
 use clap::ValueEnum;
@@ -98,10 +98,10 @@ pub fn write_document(path: &Path, text: &str) -> anyhow::Result<()> {
         }
         Ok(_) if is_link => {
             let behind = fs::canonicalize(path).map_err(|error| refused(path, &error))?;
-            write_whole(&behind, text.as_bytes()).map_err(|error| refused(path, &error))
+            write_atomically(&behind, text.as_bytes()).map_err(|error| refused(path, &error))
         }
         Err(_) if is_link => through(path, OpenOptions::new().create(true).append(true), text),
-        _ => write_whole(path, text.as_bytes()).map_err(|error| refused(path, &error)),
+        _ => write_atomically(path, text.as_bytes()).map_err(|error| refused(path, &error)),
     }
 }
 

@@ -7,7 +7,7 @@ use crate::case::Task;
 use crate::case::work_estimate::estimated_seconds;
 use crate::cli::output::say;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use oedometer_soil::wording::{count_of, duration};
+use oedometer_wording::{count_of, duration};
 use std::io::IsTerminal;
 use std::time::Duration;
 

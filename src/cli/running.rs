@@ -14,7 +14,7 @@ use crate::record::csv::TableForm;
 use crate::record::provenance::Provenance;
 use crate::record::store::RecordStore;
 use crate::study::check::Study;
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 use std::path::Path;
 
 /// Cases at the same time: what was asked for, or one a core.

@@ -8,17 +8,17 @@ use crate::cli::output::say;
 use crate::foreign::reading::mapping_of;
 use crate::import::mapping::Axes;
 use crate::record::Record;
+use crate::record::atomic_file::write_atomically;
 use crate::record::csv::long_tables::{LongTable, columns_csv};
 use crate::record::csv::{TableForm, tidy};
 use crate::record::provenance::Provenance;
 use crate::record::store::RecordStore;
-use crate::record::whole_file::write_whole;
 use crate::study::check::Purpose;
 use crate::study::check::Study;
-use crate::study::diagnostic::nearest;
 use crate::study::file::StudySource;
 use crate::study::shipped::{name_of, refused_name, shipped_names, shipped_study};
 use oedometer_formats::input_file::{self, LARGEST_TEXT};
+use oedometer_input::nearest::nearest;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::fs::File;
@@ -240,6 +240,6 @@ pub fn write_tables(
     for long in LongTable::ALL.into_iter().filter(|_| is_small(study)) {
         write(long.name(), long.header_line(), &|record| long.rows_of(record))?;
     }
-    write_whole(&store.folder().join("columns.csv"), columns_csv()?.as_bytes())?;
+    write_atomically(&store.folder().join("columns.csv"), columns_csv()?.as_bytes())?;
     Ok(table)
 }

@@ -12,7 +12,7 @@ use crate::study::check::Study;
 use crate::study::check::solvers::digest_of_file;
 use crate::study::solver::ExternalSolver;
 use clap::builder::FalseyValueParser;
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 use std::ffi::OsString;
 use std::fs::{self, OpenOptions};
 use std::io::{BufRead, IsTerminal, Write};

@@ -2,7 +2,7 @@
 
 use crate::case::keys::{KEYS, Value};
 use crate::case::{Case, Key};
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -33,7 +33,7 @@ use crate::case::Case;
 use crate::golden::compare::compare;
 use crate::golden::measure::{GoldenKey, Measure, SpreadKey, TimeFactor, WaterBalance};
 use crate::record::Record;
-use crate::record::whole_file::{StoreError, write_whole};
+use crate::record::atomic_file::{StoreError, write_atomically};
 use include_dir::{Dir, include_dir};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -269,7 +269,7 @@ impl GoldenFile {
         }
         let text =
             self.to_text().map_err(|error| GoldenError::caused(&path, "cannot be written", error, None))?;
-        write_whole(&path, text.as_bytes())?;
+        write_atomically(&path, text.as_bytes())?;
         Ok(path)
     }
 }

@@ -8,7 +8,7 @@ use crate::golden::measure::{GoldenKey, Measure, SpreadKey};
 use crate::study::check::{MOST_TOLERANCE, Study};
 use crate::study::file::GoldenRule;
 use oedometer_soil::elementary;
-use oedometer_soil::wording::words;
+use oedometer_wording::words;
 use std::collections::BTreeMap;
 
 /// Factor between the largest change seen and a tolerance that leaves room for other machines.

@@ -8,9 +8,10 @@ use crate::golden::compare::{
 use crate::golden::inputs::InputChange;
 use crate::golden::measure::{GoldenKey, Measure};
 use crate::history::state::{State, StudyState};
+use crate::measure::round_off::{ITERATIONS, ROUND_OFF};
 use crate::measure::statistics::spread;
 use oedometer_convergence::{Context, ErrorSeries, SeriesLevel, classify};
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Where something went from the first state to the second.
@@ -198,10 +199,6 @@ pub(crate) fn compare_states(
     (both, notes)
 }
 
-/// Errors up to this are round-off.
-const ROUND_OFF: f64 = 1e-12;
-/// Errors up to this may be what iterations leave.
-const ITERATIONS: f64 = 1e-8;
 /// Change of an order that is reported.
 const TOLD: f64 = 0.05;
 /// Fall of an order from which on it is lost.

@@ -12,7 +12,7 @@ use crate::record::named_cases::NamedCases;
 use crate::record::{Record, RecordStore, Status};
 use crate::study::check::Study;
 use crate::study::file::StudySource;
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 

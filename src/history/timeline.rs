@@ -6,12 +6,10 @@ use crate::golden::measure::{GoldenKey, Measure};
 use crate::history::comparison::{StudyComparison, Trend};
 use crate::history::repository::{Commit, GitError, Repository};
 use crate::history::state::{StudyState, golden_name, unreadable};
+use crate::measure::round_off::ROUND_OFF;
 use oedometer_soil::elementary;
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 use std::collections::{BTreeMap, BTreeSet};
-
-/// Errors below this are round-off: their ratios say nothing.
-const ROUND_OFF: f64 = 1e-12;
 
 /// One commit that changed a study's golden values.
 #[derive(Clone, Debug, serde::Serialize)]
@@ -160,6 +158,7 @@ fn json_name<'a>(path: &'a str, folder: &str) -> Option<&'a str> {
 fn mean_ratio(before: &GoldenFile, after: &GoldenFile, is_meant: impl Fn(&GoldenKey) -> bool) -> f64 {
     let ratios = before.values.iter().filter(|(key, _)| is_meant(key)).filter_map(|(key, value)| {
         let (before, after) = (value.abs(), after.values.get(key)?.abs());
+        // Ratios of round-off say nothing.
         (before > ROUND_OFF && after > ROUND_OFF).then(|| elementary::ln(after / before))
     });
     let (sum, count) = ratios.fold((0.0, 0_u32), |(sum, count), ratio| (sum + ratio, count + 1));

@@ -8,7 +8,7 @@ use crate::measure::statistics::{larger, largest};
 use crate::record::{Balance, LayerBalance, Record, Status};
 use crate::study::expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange, UNSOUND};
 use oedometer_convergence::{Class, Classification};
-use oedometer_soil::wording::{short, typed};
+use oedometer_wording::{rounded, typed};
 use std::collections::HashSet;
 
 impl CaseExpectation {
@@ -140,13 +140,13 @@ fn one_set_found(within: f64, record: &Record, records: &[&Record]) -> Check {
                 two.value,
                 one.value
             );
-            let allowed = format!("{} allowed", short(within));
+            let allowed = format!("{} allowed", rounded(within));
             return Check::compared(NAME, false, difference, &told, ["", "more than"], &allowed);
         }
         worst = f64::max(worst, difference);
     }
     let told = format!("{} errors are those of one point set", record.errors.len());
-    Check::compared(NAME, true, worst, &told, ["within", ""], &short(worst))
+    Check::compared(NAME, true, worst, &told, ["within", ""], &rounded(worst))
 }
 
 fn status_found(wanted: &str, record: &Record) -> Check {
@@ -235,14 +235,14 @@ fn value_found(what: &str, found: Option<f64>, Bounds { above, below }: Bounds) 
         return Check::failed(what, format!("no {what} was measured"));
     };
     let pass = value < below && value >= above;
-    let told = format!("{what}: {}", short(value));
+    let told = format!("{what}: {}", rounded(value));
     if above == 0.0 && (value.is_nan() || value >= 0.0) {
-        return Check::compared(what, pass, value, &told, BELOW, &short(below));
+        return Check::compared(what, pass, value, &told, BELOW, &rounded(below));
     }
     if below == f64::MAX {
-        return Check::compared(what, pass, value, &told, ["at least", "less than"], &short(above));
+        return Check::compared(what, pass, value, &told, ["at least", "less than"], &rounded(above));
     }
-    Check::compared(what, pass, value, &told, IN, &format!("{} … {}", short(above), short(below)))
+    Check::compared(what, pass, value, &told, IN, &format!("{} … {}", rounded(above), rounded(below)))
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use crate::measure::fields::{exact_samples, largest_contribution};
 use crate::measure::theory::known_reference;
 use crate::record::{ErrorRow, Record};
 use oedometer_exact::{ExactError, ReferenceKind};
-use oedometer_soil::wording::{short, typed};
+use oedometer_wording::{rounded, typed};
 
 /// A place with its computed and exact value.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -53,10 +53,10 @@ pub fn place_in_kept(record: &Record, row: &ErrorRow) -> Option<String> {
         "most of the error of {} at T_v = {} lies at ζ = {} (height {} m): {} for {}, {:.0} % of the squared error",
         row.quantity.name(),
         typed(row.time_factor),
-        short(place.zeta),
-        short((1.0 - place.zeta) * record.case.column.height),
-        short(place.computed),
-        short(place.exact),
+        rounded(place.zeta),
+        rounded((1.0 - place.zeta) * record.case.column.height),
+        rounded(place.computed),
+        rounded(place.exact),
         100.0 * place.share
     ))
 }
@@ -80,7 +80,7 @@ mod tests {
         points.pressure = points.initial_height.iter().map(|height| exact(*height)).collect();
         // Three and one of 5 Pa: nine tenths of the squares at the height of 1.375 m.
         (points.pressure[5], points.pressure[2]) = (exact(1.375) - 15.0, exact(0.625) + 5.0);
-        let (computed, exact) = (short(exact(1.375) - 15.0), short(exact(1.375)));
+        let (computed, exact) = (rounded(exact(1.375) - 15.0), rounded(exact(1.375)));
         let rows = record.errors.clone();
         let is_meant =
             |row: &&ErrorRow| (row.quantity, row.sample) == (Quantity::Pressure, crate::case::Sample::Points);

@@ -14,7 +14,7 @@ pub struct PathLabels {
 }
 
 /// A part of a label with a long number as a study has it: `reload_modulus=1.2e7`.
-fn short(part: &str) -> String {
+fn with_power_of_ten(part: &str) -> String {
     let number = |text: &str| text.parse::<f64>().ok().filter(|value| value.abs() >= 1e5);
     match part.split_once('=').and_then(|(name, value)| Some((name, number(value)?))) {
         Some((name, value)) => format!("{name}={value:e}"),
@@ -54,7 +54,7 @@ pub fn path_labels(paths: &[Path<'_>]) -> PathLabels {
     let is_shared = |part: &String| paths_with.get(part.as_str()) == Some(&parts.len());
     let each = parts.iter().map(|own| {
         let differing = own.iter().enumerate().filter(|(place, part)| *place == 0 || !is_shared(part));
-        differing.map(|(_, part)| short(part)).collect::<Vec<_>>().join(", ")
+        differing.map(|(_, part)| with_power_of_ten(part)).collect::<Vec<_>>().join(", ")
     });
     let shared = parts
         .first()
@@ -94,7 +94,7 @@ mod tests {
         let parts =
             ["reload_modulus=12000000", "preconsolidation=100000", "load=99999", "x=-100000", "GIMP", "a=b"];
         assert_eq!(
-            parts.map(short),
+            parts.map(with_power_of_ten),
             ["reload_modulus=1.2e7", "preconsolidation=1e5", "load=99999", "x=-1e5", "GIMP", "a=b"]
         );
     }

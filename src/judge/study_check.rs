@@ -26,7 +26,7 @@ use oedometer_convergence::Class;
 use oedometer_exact::ReferenceKind;
 use oedometer_problem::snapshot::Snapshot;
 use oedometer_scenes::column::column_parameters;
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 

@@ -13,7 +13,7 @@ use oedometer_convergence::{
     Class, Classification, Context, ErrorBound, ErrorSeries, FLOOR_LEVELS, FloorBand, NumericalUncertainty,
     OrderBand, SeriesDemand, Undefined, classify, hidden_floor,
 };
-use oedometer_soil::wording::{count_of, order, short};
+use oedometer_wording::{count_of, order, rounded};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -222,7 +222,7 @@ fn order_found(band: OrderBand, class: Option<Class>, found: &Classification) ->
 }
 
 fn error_found(bound: ErrorBound, series: &ErrorSeries) -> Check {
-    let [size, above, below] = [bound.size, bound.above, bound.below].map(short);
+    let [size, above, below] = [bound.size, bound.above, bound.below].map(rounded);
     let Some(found) = series.at(bound.size) else {
         return Check::failed("error", format!("there is no level of size {size}"));
     };
@@ -230,7 +230,7 @@ fn error_found(bound: ErrorBound, series: &ErrorSeries) -> Check {
         Err(undefined) => Check::failed("error", undefined.to_string()),
         Ok(error) => {
             let pass = error < bound.below && error >= bound.above;
-            let told = format!("error {} at size {size}", short(error));
+            let told = format!("error {} at size {size}", rounded(error));
             if error < bound.above {
                 let words = ["", "suspiciously small: expected between"];
                 return Check::compared("error", pass, error, &told, words, &format!("{above} and {below}"));
@@ -251,14 +251,14 @@ fn spread_found(bound: ErrorBound, series: &ErrorSeries) -> Check {
     let count = counted.len();
     if count < 2 {
         let levels = count_of(count, "level", "levels");
-        let reason = format!("{levels} up to size {}: too few for a spread", short(bound.size));
+        let reason = format!("{levels} up to size {}: too few for a spread", rounded(bound.size));
         return Check::failed("spread", reason);
     }
     let largest = counted.iter().copied().fold(0.0, f64::max);
     let smallest = counted.iter().copied().fold(f64::INFINITY, f64::min);
     let spread = largest / smallest - 1.0;
     let told = format!("errors of {count} levels lie within {:.3} %,", 100.0 * spread);
-    let limit = format!("{} %", short(100.0 * bound.below));
+    let limit = format!("{} %", rounded(100.0 * bound.below));
     Check::compared("spread", spread < bound.below, spread, &told, BELOW, &limit)
 }
 
@@ -275,15 +275,15 @@ fn floor_found(band: FloorBand, series: &ErrorSeries, formal: Option<f64>, found
     // A floor may bend the series without governing it yet.
     let floor = found.floor.as_ref().map_or_else(|| hidden_floor(series, formal), |floor| floor.value);
     let (words, limits) = if band.below == f64::MAX {
-        (["at least", "less than"], short(band.above))
+        (["at least", "less than"], rounded(band.above))
     } else {
-        (IN, format!("{} … {}", short(band.above), short(band.below)))
+        (IN, format!("{} … {}", rounded(band.above), rounded(band.below)))
     };
     Check::compared(
         "floor",
         band.contains(floor),
         floor,
-        &format!("error plateau {}", short(floor)),
+        &format!("error plateau {}", rounded(floor)),
         words,
         &limits,
     )
@@ -293,8 +293,8 @@ fn oscillation_found(bound: f64, oscillation: Option<f64>) -> Check {
     let Some(index) = oscillation.filter(|index| index.is_finite()) else {
         return Check::failed("oscillation", "the oscillation was not measured");
     };
-    let told = format!("oscillation {}", short(index));
-    Check::compared("oscillation", index < bound, index, &told, BELOW, &short(bound))
+    let told = format!("oscillation {}", rounded(index));
+    Check::compared("oscillation", index < bound, index, &told, BELOW, &rounded(bound))
 }
 
 fn uncertainty_found(bound: f64, found: Option<&Result<NumericalUncertainty, Undefined>>) -> Check {
@@ -309,11 +309,11 @@ fn uncertainty_found(bound: f64, found: Option<&Result<NumericalUncertainty, Und
             let relative = found.relative();
             let told = format!(
                 "uncertainty {} of the value {} by {}",
-                short(relative),
-                short(found.finest()),
+                rounded(relative),
+                rounded(found.finest()),
                 found.estimator.name()
             );
-            Check::compared("uncertainty", relative < bound, relative, &told, BELOW, &short(bound))
+            Check::compared("uncertainty", relative < bound, relative, &told, BELOW, &rounded(bound))
         }
     }
 }

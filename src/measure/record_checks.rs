@@ -6,7 +6,7 @@ use oedometer_problem::formulation::Formulation;
 use oedometer_problem::integrator::IntegratorKind;
 use oedometer_scenes::scene::{Body, Check, LoadKind, Question};
 use oedometer_soil::continuity::Continuity;
-use oedometer_soil::wording::{short, typed};
+use oedometer_wording::{rounded, typed};
 
 /// The check whose warning names numbers of points.
 const POINTS_MISSING: &str = "points missing at the start";
@@ -353,7 +353,7 @@ pub fn complaints(record: &Record) -> Vec<String> {
             return Some(format!(
                 "a mode grows by a factor of {} until the last output, from the eigenvalues of the step, \
                  more than {bound}: an earlier last output or another pressure recovery keeps it small",
-                short(check.value)
+                rounded(check.value)
             ));
         }
         Some(format!("{} is {:.2e}{when}, more than {bound:.1e}", check.what, check.value))

@@ -5,7 +5,7 @@ use crate::case::Quantity;
 use crate::measure::record_checks;
 use crate::record::{ErrorRow, Record, ReferenceUse, Status};
 use oedometer_exact::solution::ROUND_OFF;
-use oedometer_soil::wording::{short, typed};
+use oedometer_wording::{rounded, typed};
 
 /// A reference must be more accurate than this share of the smallest error against it.
 const TAIL_SHARE: f64 = 0.1;
@@ -54,7 +54,7 @@ impl PoorOutput {
             "the reference {reference} is only accurate to {accuracy:.1e}, but the smallest error against \
              it is {error:.1e}, at T_v = {}: it would have to be {} times as accurate",
             typed(*time_factor),
-            short((10.0 * accuracy / (TAIL_SHARE * error).max(ROUND_OFF)).ceil() / 10.0)
+            rounded((10.0 * accuracy / (TAIL_SHARE * error).max(ROUND_OFF)).ceil() / 10.0)
         )
     }
 }

@@ -14,9 +14,10 @@ use crate::race::group::{Group, cost_table, races};
 use crate::race::profile::CostTable;
 use crate::race::situation::{Entry, Situation};
 use crate::record::race_errors::{ARRIVED, ReadOut};
-use crate::render::chart::{Chart, ChartAxis, ChartRow, ChartRows, Series, Size, Style, slots};
+use crate::render::chart::{Chart, ChartAxis, ChartRow, ChartRows, Series, Size, Style};
 use crate::render::number;
 use crate::render::page::Figure;
+use crate::render::palette::slots;
 use crate::render::table::{Cell, Table, columns};
 use oedometer_exact::ExactError;
 use oedometer_soil::elementary;
@@ -434,7 +435,7 @@ pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
     });
     let caption = match read_out {
         ReadOut::Points => {
-            let [column, plane] = MOST_WORK.map(number::number);
+            let [column, plane] = MOST_WORK.map(number::rounded);
             format!(
                 "Farther right: dearer; equal marks are stacked. Where nothing moves, *TL-* changes nothing. *Too costly*: the error \
                  still fell on the finest mesh allowed, of {column} s of work ({plane} s in the plane); *plateau*: it no longer fell; \
@@ -447,7 +448,7 @@ pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
         ReadOut::Centres => {
             let leads = leader(race, read_out).map_or(String::new(), |one| {
                 let first = if one.as_often > 1 { ", the first" } else { "" };
-                let dearest = number::short(one.dearest);
+                let dearest = number::two_digits(one.dearest);
                 format!("Most often within 1 %: {}{first} at up to {dearest} times the least work. ", one.who)
             });
             format!("{leads}Marks and words as where fields are sampled at the points.")
@@ -476,7 +477,7 @@ fn plotted_row(situation: &Situation, methods: &[&str], terms: &Terms) -> ChartR
     let words = match arrival {
         Some((entry, cost, arrival)) => vec![
             entry.contender.clone(),
-            number::short(1e3 * cost),
+            number::two_digits(1e3 * cost),
             arrival.cells.to_string(),
             step_words(&arrival.step),
         ],
@@ -524,7 +525,7 @@ pub fn family_table(facts: &Facts, read_out: ReadOut) -> Table {
         Some(format!(", `{method}` in {} among them", letter_of(&one.family)))
     });
     let rows = families.into_iter().map(|one| {
-        let milliseconds = |work: f64| number::short(1e3 * work);
+        let milliseconds = |work: f64| number::two_digits(1e3 * work);
         let work = one.work.map(|[least, most]| {
             let both = [least, most].map(milliseconds);
             if both[0] == both[1] { both[0].clone() } else { both.join(" – ") }

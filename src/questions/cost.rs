@@ -6,9 +6,10 @@ use crate::judge::study_results::StudyResults;
 use crate::questions::finding::{Finding, Place, Question, best};
 use crate::questions::words::COUNTED_WORK;
 use crate::questions::work_precision::WorkPrecision;
-use crate::render::chart::{Chart, ChartAxis, Series, Size, slots};
+use crate::render::chart::{Chart, ChartAxis, Series, Size};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
+use crate::render::palette::slots;
 use crate::render::table::{Cell, Table, columns};
 use oedometer_exact::ExactError;
 

@@ -102,7 +102,7 @@ fn title_of(kept: &[(String, f64)], methods: usize) -> String {
 fn caption_of(off: &[(String, f64)]) -> String {
     let ends = off
         .iter()
-        .map(|(method, end)| format!("{method} at {} times the exact load", number::short(1.0 + end)));
+        .map(|(method, end)| format!("{method} at {} times the exact load", number::two_digits(1.0 + end)));
     let ends = ends.collect::<Vec<_>>().join(", ");
     if off.is_empty() {
         "All lines end within the figure.".to_owned()

@@ -8,7 +8,7 @@ use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::table::{Cell, Mood, Table, columns};
 use oedometer_exact::ExactError;
-use oedometer_soil::wording::typed;
+use oedometer_wording::typed;
 use std::cmp::Reverse;
 
 /// Who locks?
@@ -76,7 +76,7 @@ fn keeps(row: &SweepRow) -> bool {
 fn table(rows: &[&SweepRow], ratios: &[f64]) -> Table {
     let last = ratios.len() - 1;
     let [least, most] = [0, last].map(|place| typed(ratios[place]));
-    let limit = number::number(100.0 * KEPT);
+    let limit = number::rounded(100.0 * KEPT);
     let header = format!(
         "method | above {limit} % | > displacement, ν = {least} | > ν = {most} | > pressure, ν = {least} | > ν = {most}"
     );
@@ -114,7 +114,7 @@ fn title_of(rows: &[&SweepRow], ratios: &[f64]) -> String {
     format!(
         "{kept} of {} methods keep the pressure at the points within {} %",
         rows.len(),
-        number::number(100.0 * KEPT)
+        number::rounded(100.0 * KEPT)
     )
 }
 

@@ -7,7 +7,7 @@ use crate::render::{RenderError, number};
 use minijinja::value::Serde;
 use minijinja::{Environment, UndefinedBehavior, Value};
 use oedometer_convergence::Class;
-use oedometer_soil::wording::{clock_time, count_of, duration, typed};
+use oedometer_wording::{clock_time, count_of, duration, typed};
 use serde::{Deserialize, Serialize};
 
 /// An environment that knows the filters of all templates.
@@ -35,10 +35,10 @@ fn environment() -> Environment<'static> {
     environment.add_filter("fine_percent", |share: f64| format!("{:.2} %", 100.0 * share));
     environment.add_filter("millimetres", |metres: f64| number::with_unit(1e3 * metres, "mm"));
     environment.add_filter("names", |names: Vec<String>, most: Option<usize>| in_words(&names, most));
-    environment.add_filter("number", number::number);
+    environment.add_filter("number", number::rounded);
     environment.add_filter("percent", number::rounded_percent);
     environment.add_filter("seconds", number::seconds);
-    environment.add_filter("short", number::short);
+    environment.add_filter("short", number::two_digits);
     environment.add_filter("signed_percent", |share: f64| {
         let sign = if share < 0.0 { "−" } else { "+" };
         format!("{sign}{:.1} %", 100.0 * share.abs())

@@ -11,7 +11,7 @@ use crate::render::table::{Cell, Table, TableColumn};
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
 use oedometer_convergence::{Class, WINDOW};
 use oedometer_problem::time_step::TimeStep;
-use oedometer_soil::wording::clock_time;
+use oedometer_wording::clock_time;
 
 /// What is measured, and where.
 pub type Measured = (Quantity, Sample);
@@ -100,7 +100,7 @@ fn level_name(record: &Record, axis: Axis) -> [String; 3] {
         Axis::PointsPerCell => name("", case.points_per_cell.to_string(), " per cell"),
         Axis::WaterBulkModulus => name("K_w = ", format!("{:e}", case.material.water_bulk_modulus), " Pa"),
         Axis::TimeStep => match case.time_step {
-            TimeStep::Seconds(seconds) => name("Δt = ", number::number(seconds), " s"),
+            TimeStep::Seconds(seconds) => name("Δt = ", number::rounded(seconds), " s"),
             rule => {
                 let label = rule.to_string();
                 let (rule, value) = label.split_once('=').unwrap_or(("", &label));

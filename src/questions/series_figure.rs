@@ -9,7 +9,7 @@ use crate::render::chart::{self, Chart, ChartAxis, Rule, Size, SlopeTriangle};
 use crate::render::number;
 use crate::render::page::Figure;
 use crate::study::expectation::{Axis, NEXT_FINER};
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 
 /// Slopes of the triangles: of first and of second order.
 const SLOPES: [f64; 2] = [1.0, 2.0];

@@ -14,7 +14,7 @@ use crate::render::page::Block;
 use crate::render::table::{Cell, Table, columns};
 use crate::study::check::Study;
 use oedometer_exact::ExactError;
-use oedometer_soil::wording::clock_time;
+use oedometer_wording::clock_time;
 use serde::Serialize;
 
 /// How does the surface settle by date? Asked of studies with outputs at times.

@@ -4,7 +4,7 @@
 use crate::case::grouping::distinct;
 use crate::case::{Case, Quantity, Sample};
 use crate::judge::paths::grouped;
-use crate::judge::reaching::QuotedRuns;
+use crate::judge::recommendation::QuotedRuns;
 use crate::judge::study_results::StudyResults;
 use crate::questions::finding::{Finding, Place, Question};
 use crate::questions::words;
@@ -15,7 +15,7 @@ use crate::render::page::Block;
 use crate::render::table::{Cell, Mood, Table, columns};
 use crate::study::check::Study;
 use oedometer_problem::time_step::TimeStep;
-use oedometer_soil::wording::duration;
+use oedometer_wording::duration;
 use serde::Serialize;
 
 /// What comes within a bound, and at what cost?

@@ -2,7 +2,7 @@
 
 use crate::case::{Quantity, SolverName};
 use crate::judge::paths::{first_error, grouped};
-use crate::judge::reaching::QuotedRuns;
+use crate::judge::recommendation::QuotedRuns;
 use crate::measure::statistics::largest;
 use crate::record::calibration::cost_of;
 use crate::record::{Record, Status};

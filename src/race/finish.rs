@@ -2,7 +2,7 @@
 //! does not reach the tolerance where it does not.
 
 use crate::record::race_errors::{ARRIVED, ERRORS, LOOSEST, ROUGH, ReadOut, RunErrors, SMALLEST};
-use crate::record::reached::reached;
+use oedometer_convergence::reached;
 use oedometer_soil::elementary;
 use serde::{Deserialize, Serialize};
 

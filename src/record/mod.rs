@@ -3,6 +3,7 @@
 //! A record is plain data on disk. Tables, plots, verdicts and goldens read records and never a
 //! live solver, so that a report can be made again without solving.
 
+pub mod atomic_file;
 pub mod calibration;
 pub mod csv;
 pub mod field_files;
@@ -11,9 +12,7 @@ pub mod pack;
 pub mod printed;
 pub mod provenance;
 pub mod race_errors;
-pub mod reached;
 pub mod store;
-pub mod whole_file;
 
 pub use crate::case::outcome::{AttachedRun, Status, WallSample};
 use crate::case::{Case, Norm, Quantity, Sample};

@@ -3,7 +3,7 @@
 
 use crate::case::{Case, Key};
 use crate::record::Record;
-use crate::record::whole_file::{StoreError, write_rebuildable};
+use crate::record::atomic_file::{StoreError, write_rebuildable};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fs;

@@ -9,8 +9,8 @@
 //! began it. A member is written in one go behind the last one: a writer that ends at any moment leaves whole members
 //! and at most one cut one at the end, which readers leave out and name.
 
+use crate::record::atomic_file::{StoreError, is_whole, place_of_this_process, random_word};
 use crate::record::provenance::Provenance;
-use crate::record::whole_file::{StoreError, is_whole, place_of_this_process, random_word};
 use flate2::{Compression, GzBuilder};
 use std::collections::HashMap;
 use std::fmt;

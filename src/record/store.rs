@@ -1,9 +1,9 @@
 //! The records of a study on disk: all of them in packs, whatever the size of the study.
 
 use crate::case::Case;
+use crate::record::atomic_file::{StoreError, sealed};
 use crate::record::named_cases::NamedCases;
 use crate::record::pack::{Entry, Packs};
-use crate::record::whole_file::{StoreError, sealed};
 use crate::record::{Origins, Provenance, Record, SCHEMA, WallSample};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;

@@ -1,6 +1,7 @@
 //! Numbers in tables and sentences of reports.
 
-pub use oedometer_soil::wording::{order, short as number};
+use oedometer_wording::{HOUR, MINUTE, typed};
+pub use oedometer_wording::{order, rounded};
 
 /// An error: three digits, `5.62e-3`, and a power of ten unless it lies between one and a thousand.
 pub fn error(value: f64) -> String {
@@ -49,11 +50,11 @@ pub fn fixed(value: f64, decimals: usize) -> String {
 
 /// A time factor: as it was typed, and of more than four significant digits these.
 pub fn time_factor(value: f64) -> String {
-    let typed = oedometer_soil::wording::typed(value);
-    let digits = typed.chars().filter(char::is_ascii_digit).collect::<String>();
+    let text = typed(value);
+    let digits = text.chars().filter(char::is_ascii_digit).collect::<String>();
     match digits.trim_matches('0').len() {
-        0..=4 => typed,
-        _ if value.abs() >= 1e-3 => number(value),
+        0..=4 => text,
+        _ if value.abs() >= 1e-3 => rounded(value),
         _ => format!("{value:.3e}"),
     }
 }
@@ -72,7 +73,7 @@ pub fn percent(share: f64) -> String {
 
 /// A share that someone set, as a percentage without more digits than it has: `0.001` is `0.1 %`.
 pub fn bound(share: f64) -> String {
-    format!("{} %", number(100.0 * share))
+    format!("{} %", rounded(100.0 * share))
 }
 
 /// A share as a whole percentage: `0.847` is `85 %`.
@@ -81,7 +82,7 @@ pub fn rounded_percent(share: f64) -> String {
 }
 
 /// A size with two digits: `0.012`, `3.4`, `160`.
-pub fn short(value: f64) -> String {
+pub fn two_digits(value: f64) -> String {
     finite(value, |v| match v.abs() {
         0.0 => "0".to_owned(),
         a if a < 0.000_995 => format!("{v:.1e}"),
@@ -105,8 +106,8 @@ pub fn seconds(value: f64) -> String {
             a if a < 0.9995e-3 => (1e6, "µs"),
             a if a < 0.9995 => (1e3, "ms"),
             a if a < 600.0 => (1.0, "s"),
-            a if a < 36_000.0 => (1.0 / 60.0, "min"),
-            _ => (1.0 / 3600.0, "h"),
+            a if a < 36_000.0 => (1.0 / MINUTE, "min"),
+            _ => (1.0 / HOUR, "h"),
         };
         format!("{} {unit}", three_digits(v * scale))
     })
@@ -228,7 +229,7 @@ mod tests {
 
     #[test]
     fn what_is_not_finite_is_said_in_every_format() {
-        for show in [error, order, percent, seconds, number, exact] {
+        for show in [error, order, percent, seconds, rounded, exact] {
             assert_eq!([f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(show), ["NaN", "inf", "-inf"]);
         }
     }
@@ -255,7 +256,7 @@ mod tests {
         );
         assert_eq!([0, 9999, 10_000, 82_000_000].map(count), ["0", "9999", "10,000", "82,000,000"]);
         assert_eq!(
-            [0.25, 1e6, 2.2e9, 12_345.678, 1e-6].map(number),
+            [0.25, 1e6, 2.2e9, 12_345.678, 1e-6].map(rounded),
             ["0.25", "1e6", "2.2e9", "12350", "1e-6"]
         );
     }

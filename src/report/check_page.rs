@@ -16,7 +16,7 @@ use crate::render::{RenderError, number};
 use crate::report::failures::failures_of;
 use crate::report::sections;
 use crate::report::tables::golden_changes::{judgement_of, summary};
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 use std::fmt::Write as _;
 
 /// How a terminal shows a check.
@@ -348,7 +348,7 @@ fn worth_naming<'a>(
 
 fn difference(one: &Difference) -> String {
     let change = match one.growth() {
-        Some(times) => Some(format!("{} times as large", number::number(times))),
+        Some(times) => Some(format!("{} times as large", number::rounded(times))),
         None => one.relative_change().map(|change| format!("a relative change of {}", number::error(change))),
     };
     let how = match (one.golden, one.found, change) {
@@ -356,7 +356,7 @@ fn difference(one: &Difference) -> String {
             "{} was {}, {change}, {} times its tolerance",
             number::exact(found),
             number::exact(golden),
-            number::number((found - golden).abs() / one.tolerance)
+            number::rounded((found - golden).abs() / one.tolerance)
         ),
         (Some(golden), None, _) => format!("was {}", number::exact(golden)),
         (_, found, _) => found.map_or(String::new(), number::exact),
@@ -368,7 +368,7 @@ fn case_change(one: &CaseChange) -> String {
     let (mood, word) = judgement_of(one);
     let counts = format!(
         "{word}: {} times the golden cost, {}, {} fell, {} on one side only",
-        number::number(one.cost_ratio),
+        number::rounded(one.cost_ratio),
         count_of(one.worse, "error rose", "errors rose"),
         one.better,
         one.unpaired

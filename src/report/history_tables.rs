@@ -6,7 +6,7 @@ use crate::history::timeline::{Step, Timeline};
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
 use crate::report::tables::golden_changes::summary;
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 use std::collections::{BTreeMap, BTreeSet};
 
 fn trend(trend: Trend) -> Cell {

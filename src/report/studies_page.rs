@@ -11,7 +11,7 @@ use crate::render::table::{Cell, Mood, Table, columns};
 use crate::report::study_page::mood_of;
 use crate::study::check::Study;
 use oedometer_scenes::scene::Question;
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 
 /// The list of studies, and how their numbers were made.
 pub fn studies_page(all: &[StudyResults<'_>]) -> Page {

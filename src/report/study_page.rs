@@ -9,7 +9,7 @@ use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::table::Mood;
 use crate::report::check_page::judgements_table;
 use crate::report::sections::section;
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 use std::fmt::Write;
 
 /// The page of a study from its answers at [`Place::Study`].

@@ -7,7 +7,7 @@ use crate::score::score_series::time_factors;
 use oedometer_exact::row::Axis;
 use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
 use oedometer_soil::elementary::ln;
-use oedometer_soil::wording::{count_of, short, typed, words};
+use oedometer_wording::{count_of, rounded, typed, words};
 
 /// Share of the height within which a sample lies on the surface or the base.
 const RIM: f64 = 1e-6;
@@ -146,7 +146,7 @@ impl Whole<'_> {
     }
 
     fn when(&self, state: &SampledState) -> String {
-        format!("T_v = {}", short(self.parameters.time_factor(state.time)))
+        format!("T_v = {}", rounded(self.parameters.time_factor(state.time)))
     }
 
     /// The sum of the volumes against that of the scene; less by what was squeezed out is whole.
@@ -170,7 +170,7 @@ impl Whole<'_> {
         let worst = off.into_iter().rev().max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
         let of = if scene.is_some() { "that of the problem" } else { "the largest of all times" };
         Ok(worst.map(|(state, sum, share)| {
-            let (when, [sum, whole]) = (self.when(state), [sum, whole].map(short));
+            let (when, [sum, whole]) = (self.when(state), [sum, whole].map(rounded));
             let wrong = if share < 0.0 { "are missing" } else { "are too many" };
             let percent = 100.0 * share.abs();
             let sentence = format!(
@@ -189,7 +189,7 @@ impl Whole<'_> {
             format!(
                 "the volumes add up to {}, which is not a volume of the problem: they are used as weights; \
                  with `whole_volume` in the mapping their sum is checked",
-                short(sum)
+                rounded(sum)
             )
         })
     }
@@ -199,7 +199,7 @@ impl Whole<'_> {
         let state = states.first().filter(|state| !state.initial_height.is_empty())?;
         let heights = coverage::lines(&state.initial_height, self.parameters.height);
         let distances = coverage::lines(&state.initial_distance, self.parameters.length);
-        let all = |lines: &[f64]| lines.iter().map(|line| short(*line)).collect::<Vec<_>>().join(", ");
+        let all = |lines: &[f64]| lines.iter().map(|line| rounded(*line)).collect::<Vec<_>>().join(", ");
         let place = if heights.len() == 1 {
             let axis = if self.reference.row().axis == Axis::AlongSlab { "x" } else { "y" };
             format!("{axis} = {}", all(&heights))
@@ -217,7 +217,7 @@ impl Whole<'_> {
             Axis::AlongSlab => ["the middle", "the drained side", "x"],
             _ => ["the base", "the surface", "y"],
         };
-        let place = |end: &str, at: f64| format!("{end} ({axis} = {} m)", short(at));
+        let place = |end: &str, at: f64| format!("{end} ({axis} = {} m)", rounded(at));
         let bottom = place(base, 0.0);
         let top = place(surface, self.parameters.height);
         let what_is_bare = |state: &SampledState| {
@@ -351,14 +351,14 @@ pub fn uneven_meshes(
     let count = |place: usize| meshes[place].1.initial_height.len();
     let are_alike = (0..meshes.len()).all(|place| count(place) == count(0));
     (*largest > UNEVEN * least && !are_alike).then(|| {
-        let ([least, largest], cells) = ([*least, *largest].map(short), meshes[most].0);
+        let ([least, largest], cells) = ([*least, *largest].map(rounded), meshes[most].0);
         let sentence = format!("samples lie at {least} heights per cell, and at {largest} on {cells} cells");
         (fewest, Finding::new(Lack::SamplesDiffer, sentence))
     })
 }
 
 fn stretch(bare: Bare, from: &str) -> String {
-    format!("no sample lies between {} m and {} m {from}", short(bare.from), short(bare.to))
+    format!("no sample lies between {} m and {} m {from}", rounded(bare.from), rounded(bare.to))
 }
 
 /// Zeros where none can be, as programs write them at nodes without a pressure: pressures of exactly 0 inside the body

@@ -2,7 +2,7 @@
 
 use crate::import::SampledState;
 use oedometer_exact::ColumnParameters;
-use oedometer_soil::wording::short;
+use oedometer_wording::rounded;
 
 /// A gap of more than this many times the spacing around it counts as bare.
 const BARE: f64 = 1.5;
@@ -218,7 +218,7 @@ pub fn uneven_top(parameters: &ColumnParameters, states: &[SampledState]) -> Opt
     let is_top = |(y, _): &(&f64, &f64)| highest - **y <= SAME_PLACE * parameters.height;
     let top = || last.initial_height.iter().zip(&last.displacement).filter(is_top).map(|(_, up)| *up);
     let (least, most) = (top().reduce(f64::min)?, top().reduce(f64::max)?);
-    let [y, from, to] = [highest, least, most].map(short);
+    let [y, from, to] = [highest, least, most].map(rounded);
     (most - least > UNEVEN_TOP * parameters.final_settlement().abs()).then(|| {
         format!(
             "your top is not plane: at y = {y} m u_y lies between {from} and {to} m: are the sides on rollers, and does the \

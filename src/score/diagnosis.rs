@@ -18,7 +18,7 @@ use crate::score::coverage::uneven_top;
 use columns::{Column, Field, Given, Output};
 use oedometer_exact::row::Axis;
 use oedometer_exact::{ColumnParameters, ReferenceKind};
-use oedometer_soil::wording::short;
+use oedometer_wording::rounded;
 use readings::Reading;
 use search::{Explanation, Mistake};
 use world::World;
@@ -248,12 +248,12 @@ fn who(names: &[&str], several: &str) -> String {
 }
 
 fn listed(numbers: impl Iterator<Item = f64>) -> String {
-    numbers.map(short).collect::<Vec<_>>().join(", ")
+    numbers.map(rounded).collect::<Vec<_>>().join(", ")
 }
 
 /// A number to three digits: a fit gives no more.
 fn digits(number: f64) -> String {
-    short(format!("{number:.2e}").parse().unwrap_or(number))
+    rounded(format!("{number:.2e}").parse().unwrap_or(number))
 }
 
 /// A factor in words: −1.00, 0.001, 60.

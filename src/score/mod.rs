@@ -15,8 +15,8 @@ use crate::measure::fields::{
 use crate::record::ErrorRow;
 use crate::score::completeness::{Finding, Lack};
 use crate::score::score_series::{SeriesRow, time_factors};
-use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind, ShelfProblem};
-use oedometer_soil::wording::short;
+use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind, TextbookProblem};
+use oedometer_wording::rounded;
 use std::borrow::Cow;
 
 /// Share of the height, and of the length, within which a sample counts as at the surface, and as
@@ -260,7 +260,7 @@ fn impossible_value(
     let largest = |list: &[f64]| list.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let (found, possible) = (largest(computed), largest(exact).max(scale.abs()));
     (found > IMPOSSIBLE * possible).then(|| {
-        let (name, time) = (quantity.name(), short(time_factor));
+        let (name, time) = (quantity.name(), rounded(time_factor));
         format!(
             "{name} of {found:.3e} at T_v = {time}: more than {IMPOSSIBLE} times what the load can cause ({possible:.3e})"
         )
@@ -321,7 +321,8 @@ impl ScoredState<'_> {
         if self.is_settled {
             return None;
         }
-        let mean_or_plate = [ReferenceKind::Mandel, ReferenceKind::Shelf(ShelfProblem::BarronFreeStrain)];
+        let mean_or_plate =
+            [ReferenceKind::Mandel, ReferenceKind::Textbook(TextbookProblem::BarronFreeStrain)];
         if state.surface_displacement.is_some() || mean_or_plate.contains(&self.reference.kind()) {
             return state.surface_displacement;
         }

@@ -19,7 +19,7 @@ use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_scenes::scene::Body;
-use oedometer_soil::wording::short;
+use oedometer_wording::rounded;
 
 /// Why results have no score.
 #[derive(Debug, thiserror::Error)]
@@ -271,7 +271,7 @@ impl Scored {
             let column = &held.case.column;
             let of_scene = match held.mapping.whole_volume {
                 Some(volume) => vec![volume],
-                None if matches!(reference, ReferenceKind::Shelf(_)) => Vec::new(),
+                None if matches!(reference, ReferenceKind::Textbook(_)) => Vec::new(),
                 None if held.case.scene.body.is_plane() => vec![column.volume(held.case.cells)],
                 None => {
                     let widths = [Some(1.0), Some(column.extent()), self.run.width];
@@ -312,7 +312,7 @@ impl Scored {
     /// Quantities that are missing at a scored time, and tables that may be cut.
     fn missing(&self, parameters: &ColumnParameters, mapping: &Mapping) -> Vec<Finding> {
         let when =
-            |place: usize| format!("T_v = {}", short(parameters.time_factor(self.run.states[place].time)));
+            |place: usize| format!("T_v = {}", rounded(parameters.time_factor(self.run.states[place].time)));
         let absent = self.run.expected.absent(&self.run.states).into_iter();
         let shown = |lacking: Absent| Absent {
             column: lacking.column.map(|column| mapping.shown(column)),

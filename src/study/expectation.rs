@@ -7,7 +7,7 @@ use crate::record::{ErrorRow, Record};
 use oedometer_convergence::SeriesDemand as Demand;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_problem::outcome::FailureKind;
-use oedometer_soil::wording::{typed, words};
+use oedometer_wording::{typed, words};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::fmt;

@@ -9,4 +9,5 @@ pub mod shipped;
 
 pub use check::{Purpose, Study};
 pub use file::StudySource;
-pub use oedometer_foreign::{diagnostic, solver, synonyms, toml_text as reading, units};
+pub use oedometer_foreign::solver;
+pub use oedometer_input::{diagnostic, synonyms, toml_text as reading, units};

@@ -7,7 +7,7 @@ use crate::study::file::COMMAND_LINE;
 use crate::study::synonyms::read_as;
 use crate::study::units::{has_unit, in_si};
 use crate::study::{Purpose, Study, StudySource};
-use oedometer_exact::{AddedKey, ColumnParameters, ReferenceKind, ShelfParameters, ShelfProblem};
+use oedometer_exact::{AddedKey, ColumnParameters, ReferenceKind, TextbookParameters, TextbookProblem};
 use oedometer_scenes::Scene;
 use oedometer_scenes::column::column_parameters;
 use oedometer_soil::continuity::Continuity;
@@ -47,16 +47,16 @@ pub struct Assignments {
 
 impl Assignments {
     /// What is set of the inputs that no scene has, and the assignments that are a column's.
-    pub fn of_problem(&self, kind: ReferenceKind) -> Result<(Self, ShelfParameters), OverrideError> {
-        let (mut others, mut set) = (Self::default(), ShelfParameters::default());
+    pub fn of_problem(&self, kind: ReferenceKind) -> Result<(Self, TextbookParameters), OverrideError> {
+        let (mut others, mut set) = (Self::default(), TextbookParameters::default());
         for typed in &self.assignments {
             let (key, value) = assignment(typed)?;
             match AddedKey::ALL.iter().find(|added| added.key == key) {
                 Some(added) if kind.takes(added) => (added.set)(&mut set, number_of(added, &key, &value)?),
                 // A column may have a key of the same name.
-                Some(added) if is_on_shelf(kind) || column_key(&key).is_none() => {
-                    let shelf = ShelfProblem::ALL.map(ReferenceKind::Shelf).into_iter();
-                    let takers = shelf.chain(ReferenceKind::ALL).filter(|other| other.takes(added));
+                Some(added) if is_of_textbook(kind) || column_key(&key).is_none() => {
+                    let textbook = TextbookProblem::ALL.map(ReferenceKind::Textbook).into_iter();
+                    let takers = textbook.chain(ReferenceKind::ALL).filter(|other| other.takes(added));
                     let takers: Vec<_> = takers.map(|kind| format!("`{kind}`")).collect();
                     return Err(without_effect(&key, kind, &format!("it is for {}", takers.join(", "))));
                 }
@@ -84,8 +84,8 @@ impl Assignments {
     }
 }
 
-fn is_on_shelf(kind: ReferenceKind) -> bool {
-    matches!(kind, ReferenceKind::Shelf(_))
+fn is_of_textbook(kind: ReferenceKind) -> bool {
+    matches!(kind, ReferenceKind::Textbook(_))
 }
 
 /// The key of a body or its material by its dotted name.
@@ -129,7 +129,7 @@ fn why_ignored(kind: ReferenceKind, key: &str) -> &'static str {
             "its water is incompressible, so the porosity has no effect"
         }
         ("material.continuity", _) => "at small strain both forms are the same",
-        ("column.loading_time", ReferenceKind::Shelf(_)) => "its load acts at once, or in waves",
+        ("column.loading_time", ReferenceKind::Textbook(_)) => "its load acts at once, or in waves",
         ("column.loading_time", _) => "its load acts at once",
         ("column.self_weight", _) => "it has no weight",
         ("column.drainage", _) => "its base is impermeable",
@@ -354,9 +354,9 @@ pub fn has_leading_zero(entry: &str) -> bool {
     letters.next() == Some('0') && letters.next().is_some_and(|letter| letter.is_ascii_digit())
 }
 
-/// What a result is compared with: a scene, or a problem of the shelf, with its numbers.
+/// What a result is compared with: a scene, or a textbook problem, with its numbers.
 pub struct Asked {
-    /// The scene with its column as a study of one case; of a problem of the shelf the column that it is told in.
+    /// The scene with its column as a study of one case; of a textbook problem the column that it is told in.
     pub study: Study,
     /// Parameters of the references.
     pub parameters: ColumnParameters,
@@ -374,13 +374,13 @@ impl Asked {
     pub fn of_scene(scene: &str, outputs: &Outputs) -> Result<Self, OverrideError> {
         let scene = read_as(scene);
         let kind = scene.parse::<ReferenceKind>().ok();
-        let on_shelf = kind.filter(|kind| is_on_shelf(*kind));
+        let of_textbook = kind.filter(|kind| is_of_textbook(*kind));
         let mut outputs = outputs.clone();
-        let mut shelf = ShelfParameters::default();
+        let mut textbook = TextbookParameters::default();
         if let Some(kind) = kind {
-            (outputs.set, shelf) = outputs.set.of_problem(kind)?;
+            (outputs.set, textbook) = outputs.set.of_problem(kind)?;
         }
-        if let Some(kind) = on_shelf {
+        if let Some(kind) = of_textbook {
             outputs.set.refuse_ignored(kind, false)?;
             if let Some(other) = outputs.reference.take().filter(|other| other != scene) {
                 return Err(OverrideError::Typed(format!(
@@ -388,7 +388,7 @@ impl Asked {
                 )));
             }
         }
-        let name = on_shelf.map_or(scene, |kind| Scene::of_solution(kind).name);
+        let name = of_textbook.map_or(scene, |kind| Scene::of_solution(kind).name);
         let mut lines = StudyLines::of("score", name, "`--scene`")?;
         lines.give_outputs(&outputs)?;
         let is_requested = lines.has("output.time_factors") || lines.has("output.times");
@@ -396,8 +396,8 @@ impl Asked {
         let case = &study.planned[0].case;
         let references = study.references.iter().map(|kind| kind.for_soil(&case.material)).collect();
         Ok(Self {
-            parameters: ColumnParameters { shelf, ..column_parameters(&case.column, &case.material) },
-            references: on_shelf.map_or(references, |kind| vec![kind]),
+            parameters: ColumnParameters { textbook, ..column_parameters(&case.column, &case.material) },
+            references: of_textbook.map_or(references, |kind| vec![kind]),
             requested: if is_requested { case.time_factors.to_vec() } else { Vec::new() },
             study,
         })
@@ -408,8 +408,8 @@ impl Asked {
     /// # Errors
     /// What is wrong with an assignment.
     pub fn of_solution(kind: ReferenceKind, set: &Assignments) -> Result<Self, OverrideError> {
-        let (set, shelf) = set.of_problem(kind)?;
-        if is_on_shelf(kind) {
+        let (set, textbook) = set.of_problem(kind)?;
+        if is_of_textbook(kind) {
             set.refuse_ignored(kind, false)?;
         }
         let mut lines = StudyLines::of("exact", Scene::of_solution(kind).name, "the solution's name")?;
@@ -425,7 +425,7 @@ impl Asked {
             return Err(without_effect(&key, kind, why_ignored(kind, &key)));
         }
         Ok(Self {
-            parameters: ColumnParameters { shelf, ..column_parameters(&case.column, &case.material) },
+            parameters: ColumnParameters { textbook, ..column_parameters(&case.column, &case.material) },
             references: vec![kind.for_soil(&case.material)],
             requested: Vec::new(),
             study,
@@ -611,12 +611,12 @@ mod tests {
     }
 
     #[test]
-    fn what_is_set_of_a_problem_of_the_shelf_is_what_it_is_scored_against_and_printed_with() {
-        let usual = ShelfParameters::default();
-        let drain = |drain_radius| ShelfParameters { drain_radius, ..usual };
-        let wave = |wave_period| ShelfParameters { wave_period, ..usual };
-        let grains = |modulus| ShelfParameters { grain_bulk_modulus: Some(modulus), ..usual };
-        let start = |stress| ShelfParameters { initial_stress: Some(stress), ..usual };
+    fn what_is_set_of_a_textbook_problem_is_what_it_is_scored_against_and_printed_with() {
+        let usual = TextbookParameters::default();
+        let drain = |drain_radius| TextbookParameters { drain_radius, ..usual };
+        let wave = |wave_period| TextbookParameters { wave_period, ..usual };
+        let grains = |modulus| TextbookParameters { grain_bulk_modulus: Some(modulus), ..usual };
+        let start = |stress| TextbookParameters { initial_stress: Some(stress), ..usual };
         for (problem, typed, wanted) in [
             ("barron", "column.load=1", usual),
             ("barron", "drain.radius=0.125", drain(0.125)),
@@ -626,7 +626,7 @@ mod tests {
             (
                 "cryer",
                 "material.biot_coefficient=0.75",
-                ShelfParameters { biot_coefficient: Some(0.75), ..usual },
+                TextbookParameters { biot_coefficient: Some(0.75), ..usual },
             ),
             ("cryer", "material.grain_bulk_modulus=3 GPa", grains(3e9)),
             ("injection", "material.grain_bulk_modulus=3e9", grains(3e9)),
@@ -639,14 +639,14 @@ mod tests {
             let outputs = Outputs { set: set.clone(), ..Outputs::default() };
             for asked in [Asked::of_scene(problem, &outputs), Asked::of_solution(kind, &set)] {
                 let asked = asked.expect(problem);
-                assert_eq!(asked.parameters.shelf, wanted, "{problem} {typed}");
+                assert_eq!(asked.parameters.textbook, wanted, "{problem} {typed}");
                 assert_eq!(asked.references, [kind], "{problem} {typed}");
                 assert_eq!(asked.case().material.hydraulic_conductivity, 0.002, "{problem} {typed}");
             }
         }
         // A column has nothing of them, whatever it is set to.
         let outputs = Outputs::default();
-        assert_eq!(Asked::of_scene("terzaghi", &outputs).expect("a scene").parameters.shelf, usual);
+        assert_eq!(Asked::of_scene("terzaghi", &outputs).expect("a scene").parameters.textbook, usual);
     }
 
     /// Another value of a key than it has.
@@ -774,7 +774,7 @@ mod tests {
     }
 
     #[test]
-    fn a_problem_of_the_shelf_refuses_what_it_does_not_heed_and_takes_what_it_does() {
+    fn a_textbook_problem_refuses_what_it_does_not_heed_and_takes_what_it_does() {
         const WEIGHT: &str = "column.self_weight=true";
         const WATER: &str = "material.water_bulk_modulus=1e9";
         const LAW: &str = "material.law=linear";

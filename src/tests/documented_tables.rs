@@ -13,7 +13,7 @@ use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::method::Method;
 use oedometer_problem::quantity::Quantity;
 use oedometer_scenes::{COSINE_LAYER, MANUFACTURED_BOX, SCENES, Scene, TERZAGHI};
-use oedometer_soil::wording::typed;
+use oedometer_wording::typed;
 use serde_json::Value as Json;
 use std::collections::BTreeSet;
 use std::fmt::Write;

@@ -8,7 +8,7 @@ use crate::golden::tolerance::spread_by_group;
 use crate::history::comparison::{StudyComparison, compare_states};
 use crate::history::state::{State, StudyState};
 use crate::tests::{assert_snapshot, told};
-use oedometer_soil::wording::short;
+use oedometer_wording::rounded;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -96,7 +96,7 @@ fn differences_from_golden_values_are_told_as_they_were() {
         writeln!(text, "## {number}").expect("memory");
         for one in &differences {
             let [change, growth] =
-                [one.relative_change(), one.growth()].map(|value| value.map_or("–".to_owned(), short));
+                [one.relative_change(), one.growth()].map(|value| value.map_or("–".to_owned(), rounded));
             writeln!(text, "{}, changes by {change}, grows {growth}", told(one)).expect("memory");
         }
         for one in case_changes(&differences) {
@@ -207,11 +207,11 @@ fn tolerances_follow_the_spread_of_their_group() {
     let widened = golden.clone().widened_by(spread.clone());
     let mut text = String::new();
     for (key, change) in &spread {
-        writeln!(text, "{key}: {}, kept {}", short(*change), widened.spread.contains_key(key))
+        writeln!(text, "{key}: {}, kept {}", rounded(*change), widened.spread.contains_key(key))
             .expect("memory");
     }
     for (key, value) in &golden.values {
-        writeln!(text, "{key}: {}", short(widened.tolerance(key, value.abs()))).expect("memory");
+        writeln!(text, "{key}: {}", rounded(widened.tolerance(key, value.abs()))).expect("memory");
     }
     assert_snapshot("golden_tolerances", &text);
 }

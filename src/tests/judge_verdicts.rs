@@ -5,7 +5,7 @@ use oedometer_convergence::{
     Class, Context, ErrorBound, ErrorSeries, FloorBand, KnownFailure, OrderBand, SeriesDemand, SeriesLevel,
     ValueSeries,
 };
-use oedometer_soil::wording::short;
+use oedometer_wording::rounded;
 
 fn series(error: impl Fn(f64) -> f64) -> ErrorSeries {
     let sizes = [5.0, 10.0, 20.0, 40.0, 80.0, 160.0].map(|cells| 1.0 / cells);
@@ -372,7 +372,7 @@ fn a_floor_an_oscillation_and_an_uncertainty_are_told_with_their_bounds() {
     let settled = values([1.16, 1.04, 1.01]);
     let found = settled.clone().expect("three levels of second order");
     let (relative, name) = (found.relative(), found.estimator.name());
-    let told = format!("uncertainty {} of the value 1.01 by {name}", short(relative));
+    let told = format!("uncertainty {} of the value 1.01 by {name}", rounded(relative));
     let failed = values([1.0, f64::NAN, 1.0]);
     let why = format!("no uncertainty: {}", failed.clone().expect_err("no number"));
     let zero = "a value of zero has no relative uncertainty";

@@ -44,7 +44,7 @@ fn told(data: &impl serde::Serialize) -> String {
         match value {
             Value::Number(number) => match number.as_f64().expect("a number") {
                 tiny if tiny.abs() < 1e-11 => "0".to_owned(),
-                number => oedometer_soil::wording::short(number),
+                number => oedometer_wording::rounded(number),
             },
             Value::Array(all) if all.len() > 12 => {
                 format!("[{} … {}, {} in all]", joined(&all[..3]), joined(&all[all.len() - 3..]), all.len())

@@ -1,6 +1,6 @@
 //! The paper for the Journal of Open Source Software: its sections, and its numbers, which are those of the committed findings.
 
-use crate::render::number::short;
+use crate::render::number::two_digits;
 use serde_json::Value;
 
 #[test]
@@ -21,7 +21,7 @@ fn every_number_of_the_paper_s_example_is_one_of_the_committed_findings() {
             100.0 * number("printed_error"),
             number("printed_time_factor")
         ),
-        format!("agrees within {} %.", short(100.0 * conservative[1].as_f64().expect("an error").abs())),
+        format!("agrees within {} %.", two_digits(100.0 * conservative[1].as_f64().expect("an error").abs())),
     ] {
         assert!(example.contains(&sentence), "{sentence}\nis not in\n{example}");
         example = example.replace(&sentence, "");

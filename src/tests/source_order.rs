@@ -20,7 +20,13 @@ struct Order {
 
 const SOIL: Order = Order {
     root: "crates/soil/src",
-    floors: "wide wording base motion elementary tensor continuity plasticity stiffness law_data laws law conductivity material layers",
+    floors: "wide base motion elementary tensor continuity plasticity stiffness law_data laws law conductivity material layers",
+    circles: &[],
+    licensed: &[],
+};
+const INPUT: Order = Order {
+    root: "crates/input/src",
+    floors: "nearest units synonyms diagnostic source mending toml_text",
     circles: &[],
     licensed: &[],
 };
@@ -172,11 +178,12 @@ fn no_source_uses_one_above_it_or_in_a_circle() {
             &[
                 ("layered", "talbot"),
                 ("mandel/sums", "porous_soil"),
-                ("shelf/cryer", "shelf/terms"),
+                ("textbook/cryer", "textbook/terms"),
                 ("dynamic_column", "dynamic_column/summation"),
                 ("consolidation", "consolidation/series"),
             ],
         ),
+        (INPUT, &[("toml_text", "mending")]),
         (PROBLEM, &[("integrator", "time_step")]),
         (SCENES, &[("scene", "limit"), ("footing", "limit")]),
         (
@@ -206,7 +213,7 @@ fn a_planted_arrow_or_circle_is_named() {
     for (order, name, line, complaint) in [
         (SOIL, "plasticity", "use crate::law::Stiffness;", "plasticity → law"),
         (SOIL, "new", "", "new is on no floor"),
-        (EXACT, "parameters", "use crate::shelf::ShelfProblem;", "parameters → shelf"),
+        (EXACT, "parameters", "use crate::textbook::TextbookProblem;", "parameters → textbook"),
         (EXACT, "solution", "use crate::{exact_error::E, manufactured::M};", "solution → manufactured"),
         (EXACT, "layered", "fn f() { crate::reference::Reference::new(); }", "layered → reference"),
         (
@@ -223,6 +230,8 @@ fn a_planted_arrow_or_circle_is_named() {
         ),
         (MPM, "operators/row", "fn f() { crate::kernel::body::take() }", "operators/row → kernel/body"),
         (MPM, "operators/row", "use crate::operators::basis::Hat;", "operators/basis is in a circle"),
+        (INPUT, "units", "use crate::toml_text::D;", "units → toml_text"),
+        (INPUT, "nearest", "use crate::synonyms::K;", "nearest is in a circle"),
         (PROBLEM, "time_step", "use crate::{integrator::I};", "integrator is in a circle"),
         (CONVERGENCE, "class", "use crate::class::classify::classify;", "class is in a circle"),
         (HARNESS, "record", "fn f() { crate::judge::explanation::explain() }", "record → judge/explanation"),

@@ -12,7 +12,7 @@ use crate::tests::assert_snapshot;
 use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::method::Method;
 use oedometer_scenes::SCENES;
-use oedometer_soil::wording::short;
+use oedometer_wording::rounded;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -619,11 +619,11 @@ fn every_shipped_study_is_read_as_it_was() {
             writeln!(
                 text,
                 "    {} steps, {} updates, {} s a step, {} s, {} bytes",
-                short(estimated_steps(case)),
+                rounded(estimated_steps(case)),
                 estimated_updates(case),
-                short(seconds_per_step(case)),
-                short(estimated_seconds(case)),
-                short(case.estimated_bytes())
+                rounded(seconds_per_step(case)),
+                rounded(estimated_seconds(case)),
+                rounded(case.estimated_bytes())
             )
             .expect("memory");
         }

@@ -6,7 +6,7 @@ use crate::case::work_estimate::estimated_seconds;
 use crate::study::check::Study;
 use crate::study::diagnostic::Diagnostic;
 use crate::study::file::StudySource;
-use oedometer_soil::wording::duration;
+use oedometer_wording::duration;
 
 /// A study of a scene with places for what is tried.
 fn text(scene: &str, tables: &str, sweep: &str, tail: &str) -> String {

@@ -3,7 +3,7 @@
 use crate::cli::commands::schema::{Document, schema_of};
 use crate::study::check::Study;
 use crate::study::file::StudySource;
-use oedometer_foreign::synonyms::{FIELD_TERMS, KEY_NAMES, read_as};
+use oedometer_input::synonyms::{FIELD_TERMS, KEY_NAMES, read_as};
 use oedometer_soil::laws::Law;
 
 const SOUND: &str = "title = \"t\"\nscene = \"terzaghi\"\n[material]\nporosity = 0.3\n\

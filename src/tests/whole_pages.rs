@@ -22,7 +22,7 @@ use crate::report::tables::measures;
 use crate::study::check::Study;
 use crate::study::file::StudySource;
 use crate::tests::assert_snapshot;
-use oedometer_soil::wording::short;
+use oedometer_wording::rounded;
 use regex_lite::Regex;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -311,7 +311,7 @@ fn without_round_off(text: &str) -> String {
     let long = Regex::new(r"\d+\.\d{11,}(e-?\d+)?").expect("a pattern");
     let text = tiny.expect("a pattern").replace_all(text, "≈0").into_owned();
     let shorter =
-        |found: &regex_lite::Captures| found[0].parse::<f64>().map_or_else(|_| String::new(), short);
+        |found: &regex_lite::Captures| found[0].parse::<f64>().map_or_else(|_| String::new(), rounded);
     long.replace_all(&text, shorter).into_owned()
 }
 
@@ -377,14 +377,14 @@ fn first_pages(results: &[StudyResults<'_>]) -> [Page; 3] {
 fn figure_told(name: &str, chart: &Chart) -> String {
     let mut text = format!("{name}: {}; {} over {}", chart.title, chart.y.label, chart.x.label);
     let _ = chart.subtitle.iter().try_for_each(|line| write!(text, "; {line}"));
-    let point = |(x, y): (f64, f64)| format!("({}, {})", short(x), short(y));
+    let point = |(x, y): (f64, f64)| format!("({}, {})", rounded(x), rounded(y));
     for one in &chart.series {
         let ends = one.points.first().zip(one.points.last()).map(|(first, last)| [*first, *last].map(point));
         let ends = ends.map_or(String::new(), |[first, last]| format!(" {first} … {last}"));
         let _ = write!(text, "\n  {:?} {}: {}{ends}", one.style, one.name, one.points.len());
     }
     for rule in &chart.rules {
-        let _ = write!(text, "\n  at {}: {}", short(rule.at), rule.label);
+        let _ = write!(text, "\n  at {}: {}", rounded(rule.at), rule.label);
     }
     for triangle in &chart.triangles {
         let _ = write!(text, "\n  slope {} beside {}", triangle.slope, triangle.beside);

@@ -8,7 +8,7 @@ use crate::record::csv::long_tables::{LongTable, columns_csv};
 use crate::record::csv::tidy;
 use crate::record::{Record, WallSample};
 use crate::tests::{assert_snapshot, told};
-use oedometer_soil::wording::short;
+use oedometer_wording::rounded;
 use regex_lite::Regex;
 use serde_json::Value;
 use std::fmt::Write as _;
@@ -146,12 +146,12 @@ fn records_of_small_runs_are_what_they_were() {
 }
 
 /// A table without its last digits.
-fn rounded(table: &str) -> String {
+fn with_rounded_cells(table: &str) -> String {
     let mut text = String::new();
     for line in table.lines() {
         let cell = |cell: &str| match cell.parse::<f64>() {
             Ok(tiny) if tiny.abs() < 1e-11 => "0".to_owned(),
-            Ok(number) if cell.len() > 8 => short(number),
+            Ok(number) if cell.len() > 8 => rounded(number),
             _ => cell.to_owned(),
         };
         text += &line.split(',').map(cell).collect::<Vec<_>>().join(",");
@@ -175,13 +175,19 @@ fn tables_of_records_are_what_they_were() {
         let rows: String = records.iter().map(|one| tidy::rows_of("the study", one).expect("rows")).collect();
         let rows: Vec<&str> = rows.lines().step_by(7).collect();
         let rows = rows.join("\n");
-        writeln!(text, "## {}\n{}", RUNS[place].0, rounded(&(tidy::header_line() + &rows))).expect("memory");
+        writeln!(text, "## {}\n{}", RUNS[place].0, with_rounded_cells(&(tidy::header_line() + &rows)))
+            .expect("memory");
         for long in [LongTable::Profiles, LongTable::History] {
             let rows: String = records.iter().map(|one| long.rows_of(one).expect("rows")).collect();
             let rows: Vec<&str> = rows.lines().collect();
             let ends = [&rows[..rows.len().min(4)], &rows[rows.len().saturating_sub(2)..]].concat();
-            writeln!(text, "{} rows\n{}", rows.len(), rounded(&(long.header_line() + &ends.join("\n"))))
-                .expect("memory");
+            writeln!(
+                text,
+                "{} rows\n{}",
+                rows.len(),
+                with_rounded_cells(&(long.header_line() + &ends.join("\n")))
+            )
+            .expect("memory");
         }
     }
     text += &columns_csv().expect("a table");
@@ -197,13 +203,13 @@ fn every_check_of_every_scene_has_its_bound_and_its_sentence() {
         let start = start_checks(&record);
         let balances = record.balance.iter().flat_map(|balance| balance_checks(&record, balance));
         for check in start.into_iter().chain(balances) {
-            let bound = check.bound.map_or("none".to_owned(), short);
+            let bound = check.bound.map_or("none".to_owned(), rounded);
             let value = if check.value.abs() < 1e-11 { 0.0 } else { check.value };
             writeln!(
                 text,
                 "{}: {}, bound {bound}, {} {}",
                 check.what,
-                short(value),
+                rounded(value),
                 check.unjudged,
                 check.holds()
             )

@@ -25,7 +25,7 @@ mod check {
 mod exact {
     mod portable;
     mod problems;
-    mod shelf;
+    mod textbook;
 }
 mod history {
     mod repository;

@@ -4,7 +4,7 @@ use crate::Case;
 use crate::outcome::{Outcome, Status};
 use oedometer_problem::outcome::{Failure, FailureKind};
 use oedometer_problem::snapshot::{Samples, Snapshot};
-use oedometer_soil::wording::{count_of, short, typed};
+use oedometer_wording::{count_of, rounded, typed};
 
 /// How far, relative, a state may lie from the output that it stands for.
 pub const SAME_TIME: f64 = 1e-3;
@@ -38,7 +38,7 @@ fn lack_of(case: &Case, states: &[Snapshot]) -> Option<String> {
     outputs.iter().zip(states).find_map(|(output, state)| {
         let time_factor = state.time / case.seconds_per_time_factor();
         let is_near = (time_factor - output).abs() <= SAME_TIME * output;
-        let other = || Some(format!("the state is that of T_v = {}", short(time_factor)));
+        let other = || Some(format!("the state is that of T_v = {}", rounded(time_factor)));
         let lack = if is_near { lack_of_state(state) } else { other() };
         lack.map(|lack| format!("at T_v = {}, {lack}", typed(*output)))
     })

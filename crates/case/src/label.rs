@@ -8,7 +8,7 @@ use oedometer_soil::base::Drainage;
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::material::Material;
-use oedometer_soil::wording::typed;
+use oedometer_wording::typed;
 
 impl Case {
     /// What is special about integration and equations: empty for the paper's integration of the

@@ -26,7 +26,7 @@ use oedometer_scenes::column::{Column, column_parameters};
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
-use oedometer_soil::wording::words;
+use oedometer_wording::words;
 pub use planned::{PlannedCase, Planner, Shared, Tier};
 use serde::{Deserialize, Serialize};
 pub use solver::{Attached, SolverName};

@@ -2,7 +2,7 @@
 //! common, kept once and read as if each had its own.
 
 use crate::Case;
-use oedometer_soil::wording::words;
+use oedometer_wording::words;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;

@@ -8,6 +8,7 @@
 //! | [`classify`] | class of a series, before any order is quoted | the rules are listed at [`classify`] |
 //! | [`hidden_floor`] | floor of `e = C h^p + F` | variable projection (Golub & Pereyra 1973), F-test |
 //! | [`ValueSeries::uncertainty`] | uncertainty of a value without an exact solution | grid convergence index: Roache (1998), Celik et al. (2008); least squares: Eça & Hoekstra (2014) |
+//! | [`reached`] | level from which on a tolerance is kept, and whether a finer one confirms it: the rule of every recommendation | – |
 //! | [`front`] | Pareto front of error and cost | – |
 //! | [`SeriesDemand`] | what a study expects of a series | – |
 
@@ -19,6 +20,7 @@ mod demand;
 mod fit;
 mod orders;
 mod pareto;
+mod reached;
 mod series;
 mod uncertainty;
 
@@ -27,6 +29,7 @@ pub use demand::{ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand};
 pub use fit::floor::{Limiter, LimiterKind, hidden_floor};
 pub use orders::{SlopeFit, WINDOW, finest_order, pair_orders, slope};
 pub use pareto::{CostPoint, ParetoChange, front};
+pub use reached::{Reached, reached};
 pub use series::{ErrorSeries, SeriesLevel, Undefined};
 pub use uncertainty::{
     Behaviour, ErrorModel, Estimator, GridConvergence, GridUncertainty, LeastSquaresUncertainty,

@@ -1,5 +1,6 @@
 //! Errors of the exact solutions, as sentences.
 
+use oedometer_wording::typed;
 use thiserror::Error;
 
 /// Why an exact solution gives no number.
@@ -7,7 +8,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum ExactError {
     /// A quantity that must be positive is zero, negative or not finite.
-    #[error("the {quantity} must be positive and finite, got {}", short(*value))]
+    #[error("the {quantity} must be positive and finite, got {}", typed(*value))]
     NotPositive {
         /// Name of the quantity.
         quantity: &'static str,
@@ -227,12 +228,6 @@ pub enum ExactError {
         /// Largest difference of the pressure over the load; not finite where no solution was found.
         difference: f64,
     },
-}
-
-/// A number without long runs of zeros.
-fn short(value: f64) -> String {
-    let is_plain = value == 0.0 || !value.is_finite() || (1e-6..1e16).contains(&value.abs());
-    if is_plain { value.to_string() } else { format!("{value:e}") }
 }
 
 /// Passes a positive finite `value` on, refuses any other.

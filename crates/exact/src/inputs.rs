@@ -3,7 +3,7 @@
 //! Each problem lists its keys as `INPUTS`, from the sets below and keys that no other problem has;
 //! [`ReferenceKind::inputs`] (`crate::reference::ReferenceKind::inputs`) joins them.
 
-use crate::parameters::ShelfParameters;
+use crate::parameters::TextbookParameters;
 
 /// The body, its load and the parameters that convert a time factor to a time.
 pub(crate) const COLUMN_KEYS: &[&str] = &[
@@ -38,7 +38,7 @@ pub struct AddedKey {
     /// SI unit, empty if dimensionless.
     pub unit: &'static str,
     /// Sets the value.
-    pub set: fn(&mut ShelfParameters, f64),
+    pub set: fn(&mut TextbookParameters, f64),
 }
 
 impl AddedKey {

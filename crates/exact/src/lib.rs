@@ -12,7 +12,7 @@
 //! | [`layered`] | column of layers | Schiffman & Stein (1970) |
 //! | [`mirrored`] | columns of one soil drained at both ends | two of half the height |
 //! | [`yield_front`] | front of first loading that moves into a column | Neumann, in Carslaw & Jaeger (1959) |
-//! | [`shelf`] | Biot's column, Cryer's sphere, drains, seabed, injection, Davis & Raymond's column | there |
+//! | [`textbook`] | Biot's column, Cryer's sphere, drains, seabed, injection, Davis & Raymond's column | there |
 //! | [`manufactured`] | motions of the unit square with body forces and sources that make them exact | docs/theory.md, Eqs 24–28 |
 //!
 //! [`consolidation`] has Terzaghi's functions of depth and time that several of them share. [`Reference`] gives the fields
@@ -44,18 +44,18 @@ pub mod parameters;
 mod porous_soil;
 pub mod reference;
 pub mod row;
-pub mod shelf;
 pub mod single_mode;
 pub mod solution;
 mod talbot;
 pub mod terzaghi;
+pub mod textbook;
 mod unchanging;
 pub mod xie_leo;
 pub mod yield_front;
 
 pub use crate::exact_error::{ExactError, normal};
 pub use crate::inputs::AddedKey;
-pub use crate::parameters::{Base, ColumnParameters, Drainage, MotionParameters, ShelfParameters};
+pub use crate::parameters::{Base, ColumnParameters, Drainage, MotionParameters, TextbookParameters};
 pub use crate::reference::{Reference, ReferenceKind};
-pub use crate::shelf::ShelfProblem;
 pub use crate::solution::{Accuracy, FieldValues, Solution};
+pub use crate::textbook::TextbookProblem;

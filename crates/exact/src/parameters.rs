@@ -18,7 +18,7 @@ pub enum Water {
 
 /// Parameters beyond those of a column, for problems without a scene and the slab; each reads those in its `INPUTS`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShelfParameters {
+pub struct TextbookParameters {
     /// Biot coefficient `α`; without it `1 − K/K_s`, and 1 without both.
     pub biot_coefficient: Option<f64>,
     /// Bulk modulus of the grains `K_s`, Pa; without it `K/(1 − α)`, infinite where `α = 1`.
@@ -31,7 +31,7 @@ pub struct ShelfParameters {
     pub initial_stress: Option<f64>,
 }
 
-impl Default for ShelfParameters {
+impl Default for TextbookParameters {
     fn default() -> Self {
         Self {
             biot_coefficient: None,
@@ -69,8 +69,8 @@ pub struct ColumnParameters {
     pub self_weight: bool,
     /// How a manufactured solution moves; nothing else heeds it.
     pub motion: MotionParameters,
-    /// What problems of the shelf and the slab add; nothing else heeds it.
-    pub shelf: ShelfParameters,
+    /// What problems of textbooks and the slab add; nothing else heeds it.
+    pub textbook: TextbookParameters,
     /// Layers from the base up; only a layered column heeds them.
     pub soils: SoilLayers,
     /// Effective stress of the start, compression positive, Pa; only a yield front heeds it.
@@ -91,7 +91,7 @@ impl Default for ColumnParameters {
             loading_time: 0.0,
             self_weight: false,
             motion: MotionParameters::default(),
-            shelf: ShelfParameters::default(),
+            textbook: TextbookParameters::default(),
             soils: SoilLayers::default(),
             uniform_stress: 0.0,
             plate_width: 0.0,

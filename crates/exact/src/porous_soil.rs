@@ -25,22 +25,22 @@ pub struct PorousSoil {
 }
 
 impl PorousSoil {
-    /// The soil of a column with its shelf parameters.
+    /// The soil of a column with its textbook parameters.
     ///
     /// # Errors
     /// When `α` lies outside `[n, 1]` or `K_s` is not positive.
     pub fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
-        let ColumnParameters { soil, shelf, .. } = *parameters;
+        let ColumnParameters { soil, textbook, .. } = *parameters;
         let Material { youngs_modulus, poissons_ratio, porosity, .. } = soil;
         let shear = youngs_modulus / (2.0 * (1.0 + poissons_ratio));
         let bulk = youngs_modulus / (3.0 * (1.0 - 2.0 * poissons_ratio));
-        let (alpha, compliance) = match (shelf.biot_coefficient, shelf.grain_bulk_modulus) {
+        let (alpha, compliance) = match (textbook.biot_coefficient, textbook.grain_bulk_modulus) {
             (None, None) => (1.0, 0.0),
             (Some(alpha), None) => (alpha, (1.0 - alpha) / bulk),
             (None, Some(grains)) => (1.0 - bulk / grains, 1.0 / positive(GRAINS, grains)?),
             (Some(alpha), Some(grains)) => (alpha, 1.0 / positive(GRAINS, grains)?),
         };
-        if let Some(grains) = shelf.grain_bulk_modulus.filter(|grains| *grains < bulk) {
+        if let Some(grains) = textbook.grain_bulk_modulus.filter(|grains| *grains < bulk) {
             return Err(ExactError::SoftGrains { grains, bulk });
         }
         if !(porosity..=1.0).contains(&alpha) {

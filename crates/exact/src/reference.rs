@@ -18,10 +18,10 @@ use crate::manufactured::{self, Manufactured};
 use crate::mirrored::Mirrored;
 use crate::parameters::{ColumnParameters, Drainage, Water};
 use crate::row::Row;
-use crate::shelf::ShelfProblem;
 use crate::single_mode::{self, SingleMode};
 use crate::solution::{Accuracy, FieldValues, Solution};
 use crate::terzaghi::{self, Terzaghi};
+use crate::textbook::TextbookProblem;
 use crate::unchanging::{self, Unchanging};
 use crate::xie_leo::{self, XieLeo};
 use crate::yield_front::{self, YieldFront};
@@ -66,12 +66,12 @@ pub enum ReferenceKind {
     /// A motion in the plane that is exact because body forces and a source make it so.
     Manufactured(ManufacturedModel),
     /// A problem that no scene solves.
-    Shelf(ShelfProblem),
+    Textbook(TextbookProblem),
 }
 
 impl ReferenceKind {
     /// All kinds that a scene solves, in the order of the documentation; large strain and motions with their default
-    /// models. [`ShelfProblem::ALL`] has the others.
+    /// models. [`TextbookProblem::ALL`] has the others.
     pub const ALL: [Self; 19] = [
         Self::Terzaghi,
         Self::TerzaghiIncompressible,
@@ -114,7 +114,7 @@ impl ReferenceKind {
             Self::SealedElement => &unchanging::SEALED_ELEMENT,
             Self::Footing => &footing::FOOTING,
             Self::Manufactured(model) => &manufactured::ROWS[model.motion as usize],
-            Self::Shelf(problem) => problem.row(),
+            Self::Textbook(problem) => problem.row(),
         }
     }
 
@@ -131,7 +131,7 @@ impl ReferenceKind {
 
     /// Whether the solution reads a key that no scene has.
     pub fn takes(self, added: &AddedKey) -> bool {
-        matches!(self, Self::Shelf(_) | Self::Mandel) && self.inputs(false).contains(&added.name())
+        matches!(self, Self::Textbook(_) | Self::Mandel) && self.inputs(false).contains(&added.name())
     }
 
     /// Whether a time in seconds belongs to a time factor.
@@ -141,7 +141,7 @@ impl ReferenceKind {
 
     /// All kinds, with those that no scene solves.
     pub fn all() -> impl Iterator<Item = Self> {
-        Self::ALL.into_iter().chain(ShelfProblem::ALL.map(Self::Shelf))
+        Self::ALL.into_iter().chain(TextbookProblem::ALL.map(Self::Textbook))
     }
 
     /// Whether the solution is a prescribed motion instead of a body under a load.
@@ -264,7 +264,7 @@ impl Reference {
                 plane = Some(Plane::Motion(motion));
                 Arc::new(motion)
             }
-            ReferenceKind::Shelf(problem) => problem.solution(parameters)?,
+            ReferenceKind::Textbook(problem) => problem.solution(parameters)?,
         };
         Ok(Self { kind, solution, plane, initial_stress: parameters.initial_stress(1.0) })
     }

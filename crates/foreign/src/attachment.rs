@@ -17,7 +17,7 @@ use oedometer_exact::exact_error::ExactError;
 use oedometer_problem::outcome::{Failure, StepSizes};
 use oedometer_problem::snapshot::{PlaneSamples, Samples, Snapshot};
 use oedometer_scenes::scene::Body;
-use oedometer_soil::wording::{count_of, short};
+use oedometer_wording::{count_of, rounded};
 use regex_lite::Regex;
 use std::path::PathBuf;
 use std::sync::{Condvar, Mutex, OnceLock, PoisonError};
@@ -231,7 +231,7 @@ impl<'a> Attachment<'a> {
         let finished = self.finished(&filling, &staged, course);
         let own_seconds = self.own_seconds(&finished);
         if let Some(own) = own_seconds.filter(|own| *own > OWN_ABOVE_WALL * finished.seconds) {
-            let [own, wall] = [own, finished.seconds].map(short);
+            let [own, wall] = [own, finished.seconds].map(rounded);
             note(
                 about,
                 format!(

@@ -21,7 +21,7 @@ use crate::started_processes::named;
 use oedometer_case::complete_states::SAME_TIME;
 use oedometer_case::{Case, Sample};
 use oedometer_problem::outcome::{Failure, FailureKind};
-use oedometer_soil::wording::{short, typed};
+use oedometer_wording::{rounded, typed};
 use std::process::ExitStatus;
 
 /// Exit code by which a program says that it cannot run here.
@@ -262,7 +262,7 @@ pub(crate) fn states_at_outputs(
         .collect();
     if !missing.is_empty() {
         let listed = |factors: &mut dyn Iterator<Item = f64>| {
-            factors.take(MOST_TIMES).map(short).collect::<Vec<_>>().join(", ")
+            factors.take(MOST_TIMES).map(rounded).collect::<Vec<_>>().join(", ")
         };
         let there = if states.is_empty() {
             "it has none".to_owned()
@@ -319,9 +319,9 @@ fn lack(case: &Case, time_factor: f64, state: &SampledState, has_changing_mesh: 
     let (places, [from, to]) = of_height.or_else(of_length)?;
     Some(format!(
         "{when}, no sample lies between the {places} {} m and {} m, with cells of {} m",
-        short(from),
-        short(to),
-        short(size)
+        rounded(from),
+        rounded(to),
+        rounded(size)
     ))
 }
 

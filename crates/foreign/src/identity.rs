@@ -9,7 +9,7 @@ use crate::process::{self, Ending, Order};
 use crate::solver::{ExternalSolver, placeholders_of};
 use crate::staging::words_of;
 use oedometer_formats::input_file;
-use oedometer_soil::wording::typed;
+use oedometer_wording::typed;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};

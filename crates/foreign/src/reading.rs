@@ -1,16 +1,16 @@
 //! Reads the result files of a solver as states, and reports how they were read.
 
-use crate::diagnostic::StudyError;
 use crate::import::mapping::{Axes, Mapping};
 use crate::import::nodes::counted_otherwise;
 use crate::import::raw_row::SolvedBody;
 use crate::import::runs::{Run, files_of, runs_of};
 use crate::import::{SampledState, not_ended};
 use crate::solver::ExternalSolver;
-use crate::source::StudySource;
 use oedometer_case::{Case, Sample};
 use oedometer_formats::{ImportError, input_file, with_named};
-use oedometer_soil::wording::short;
+use oedometer_input::diagnostic::StudyError;
+use oedometer_input::source::StudySource;
+use oedometer_wording::rounded;
 use std::path::PathBuf;
 
 /// Multiple of the load that no pressure reaches.
@@ -154,7 +154,7 @@ fn unfit(case: &Case, sample: Sample, run: &Run) -> Option<String> {
         return Some(not_ended(file));
     }
     let when =
-        |place: usize| format!("T_v = {}", short(run.states[place].time / case.seconds_per_time_factor()));
+        |place: usize| format!("T_v = {}", rounded(run.states[place].time / case.seconds_per_time_factor()));
     if let Some(absent) = run.expected.absent(&run.states).first() {
         return Some(absent.sentence(when));
     }
@@ -238,7 +238,7 @@ fn beyond_the_load(case: &Case, state: &SampledState) -> Option<String> {
     Some(format!(
         "a pressure is {:.3e} Pa, more than {IMPOSSIBLE} times the load of {} Pa",
         state.pressure[place],
-        short(case.column.pressure_scale())
+        rounded(case.column.pressure_scale())
     ))
 }
 

@@ -1,6 +1,6 @@
 //! Arrangements of the points in their cells: the regular lattice, shifted or jittered points, one or two point sets.
 
-use oedometer_soil::wording::is_default;
+use oedometer_wording::is_default;
 use serde::{Deserialize, Serialize};
 
 /// Departure of the points from the regular lattice, the same for every point of a row.

@@ -1,6 +1,6 @@
 //! Which of the balances' accelerations are kept.
 
-use oedometer_soil::wording::words;
+use oedometer_wording::words;
 
 /// Which accelerations the balances keep (docs/theory.md, section 1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@ pub use crate::formulation::Formulation;
 
 use crate::settings::{Drag, ExplicitSettings, Scheme};
 use crate::time_step::TimeStep;
-use oedometer_soil::wording::words;
+use oedometer_wording::words;
 
 /// Share of the critical step where an explicit run names no rule.
 const DEFAULT_SHARE: f64 = 0.8;

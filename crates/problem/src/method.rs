@@ -1,7 +1,7 @@
 //! A method is a choice of four independent operators and of the configuration they live on.
 
 use oedometer_soil::material::Material;
-use oedometer_soil::wording::{is_default, words};
+use oedometer_wording::{is_default, words};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::sync::LazyLock;

@@ -1,7 +1,7 @@
 //! The outcome of a run: its end by name, counters, step sizes and snapshots.
 
 use crate::snapshot::Snapshot;
-use oedometer_soil::wording::words;
+use oedometer_wording::words;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 

@@ -1,7 +1,7 @@
 //! What is measured, where, and in which norm.
 
 use crate::snapshot::{Samples, Snapshot};
-use oedometer_soil::wording::words;
+use oedometer_wording::words;
 use std::fmt;
 
 /// A measured quantity.

@@ -7,7 +7,7 @@
 //! Wanner 2003): second order for the same work. The drag must then be centred too.
 
 use oedometer_soil::elementary;
-use oedometer_soil::wording::words;
+use oedometer_wording::words;
 use serde::{Deserialize, Serialize};
 
 /// Time levels of velocities and stresses.

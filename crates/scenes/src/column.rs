@@ -6,7 +6,7 @@ use oedometer_soil::base::{Base, Drainage};
 use oedometer_soil::layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
 use oedometer_soil::motion::MotionParameters;
-use oedometer_soil::wording::{is_default, words};
+use oedometer_wording::{is_default, words};
 use serde::{Deserialize, Serialize};
 
 /// Geometry and load of a column, or of another body that drains at its top.

@@ -1,6 +1,6 @@
 //! The contact of a body of soil with what is under it.
 
-use crate::wording::words;
+use oedometer_wording::words;
 
 /// How a layer rests on its impermeable base.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]

@@ -1,6 +1,6 @@
 //! The mean of the hydraulic conductivity for the drag of a node.
 
-use crate::wording::words;
+use oedometer_wording::words;
 
 /// Mean of the hydraulic conductivity at a node.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]

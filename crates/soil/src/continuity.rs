@@ -1,6 +1,6 @@
 //! How the pore water is conserved: docs/theory.md, Eqs 4 and 4'.
 
-use crate::wording::words;
+use oedometer_wording::words;
 
 /// Continuity equation of the mixture (docs/theory.md, Eqs 4 and 4').
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

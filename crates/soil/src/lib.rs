@@ -18,4 +18,3 @@ pub mod plasticity;
 pub mod stiffness;
 pub mod tensor;
 pub mod wide;
-pub mod wording;

@@ -5,7 +5,7 @@ use crate::continuity::Continuity;
 use crate::elementary;
 use crate::law::{Law, StressLaw};
 use crate::stiffness::Stiffness;
-use crate::wording::is_default;
+use oedometer_wording::is_default;
 use serde::{Deserialize, Serialize};
 
 /// Parameters of the saturated soil in its initial state, SI.

@@ -18,7 +18,7 @@ use crate::golden::{GoldenError, GoldenFile};
 use crate::history::accepted_inputs::changes_since;
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::judge::study_results::StudyResults;
-use crate::judge::thinning::thin;
+use crate::judge::unneeded_data::drop_unneeded;
 use crate::judge::verdict::Judgement;
 use crate::questions::answers;
 use crate::questions::finding::{Finding, Place};
@@ -27,7 +27,7 @@ use crate::report::annotations::annotations_of;
 use crate::report::check_page::{self, Terminal};
 use crate::report::junit::junit;
 use crate::study::check::Study;
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -143,7 +143,7 @@ fn reports_of(
     let alone: BTreeSet<&str> = is_alone.map(|(study, _)| study.name.as_str()).collect();
     let thin_alone = |study: &Study, record: &mut Record| {
         if alone.contains(study.name.as_str()) && study.planned.len() > MOST_SHOWN_CASES {
-            thin(study, record);
+            drop_unneeded(study, record);
         }
     };
     let records = (!arguments.fresh).then_some(arguments.records.as_path());

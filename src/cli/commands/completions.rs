@@ -5,7 +5,7 @@ use crate::cli::output::print_data;
 use crate::study::shipped::shipped_names;
 use clap::builder::PossibleValuesParser;
 use clap_complete::Shell;
-use oedometer_exact::{ReferenceKind, ShelfProblem};
+use oedometer_exact::{ReferenceKind, TextbookProblem};
 use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::method::Method;
 use oedometer_scenes::SCENES;
@@ -23,7 +23,7 @@ fn with_names(command: clap::Command) -> clap::Command {
     let lasting = |names: Vec<String>| names.into_iter().map(|name| &*name.leak()).collect::<Vec<&str>>();
     let references: Vec<&str> = ReferenceKind::ALL.iter().map(|kind| kind.name()).collect();
     let scenes: Vec<&str> = SCENES.iter().map(|scene| scene.name).collect();
-    let with_shelf = |names: &[&'static str]| [names, &ShelfProblem::NAMES].concat();
+    let with_textbook = |names: &[&'static str]| [names, &TextbookProblem::NAMES].concat();
     let integrators = IntegratorKind::ALL.iter().map(|integrator| integrator.name()).collect();
     let named = [
         ("method", lasting(Method::names())),
@@ -33,8 +33,8 @@ fn with_names(command: clap::Command) -> clap::Command {
     ];
     command.mut_subcommands(|subcommand| {
         let of_scene = match subcommand.get_name() {
-            "exact" => with_shelf(&references),
-            "score" => with_shelf(&scenes),
+            "exact" => with_textbook(&references),
+            "score" => with_textbook(&scenes),
             _ => scenes.clone(),
         };
         let named = named.iter().chain([&("scene", of_scene.clone())]).cloned().collect::<Vec<_>>();
@@ -67,13 +67,13 @@ mod tests {
         };
         let scenes: Vec<&str> = SCENES.iter().map(|scene| scene.name).collect();
         let references: Vec<&str> = ReferenceKind::ALL.iter().map(|kind| kind.name()).collect();
-        let shelf =
+        let textbook =
             ["biot-column", "cryer", "barron", "barron-free-strain", "seabed", "injection", "davis-raymond"];
         for name in ["solve", "stability", "new"] {
             assert_eq!(offered(name, "scene"), scenes, "{name}");
         }
-        assert_eq!(offered("exact", "scene"), [&references[..], &shelf].concat());
-        assert_eq!(offered("score", "scene"), [&scenes[..], &shelf].concat());
+        assert_eq!(offered("exact", "scene"), [&references[..], &textbook].concat());
+        assert_eq!(offered("score", "scene"), [&scenes[..], &textbook].concat());
         assert_eq!(offered("solve", "reference"), references);
         assert_eq!(offered("score", "reference"), references);
         for name in ["solve", "stability"] {

@@ -13,9 +13,9 @@ use oedometer_exact::footing::LOAD_FACTOR;
 use oedometer_exact::mandel::Mandel;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
-use oedometer_exact::{ShelfProblem, consolidation};
+use oedometer_exact::{TextbookProblem, consolidation};
 use oedometer_scenes::scene::Clock;
-use oedometer_soil::wording::{count_of, typed};
+use oedometer_wording::{count_of, typed};
 
 /// Distances from the middle of a slab if none are given.
 const DEFAULT_DISTANCES: &str = "0,0.25,0.5,0.75,1";
@@ -179,7 +179,7 @@ fn column_rows(
 ) -> anyhow::Result<Vec<PrintedRow>> {
     let kind = reference.kind();
     let mut depths = numbers("--zeta", &arguments.zeta)?;
-    if kind == ReferenceKind::Shelf(ShelfProblem::Injection) && arguments.zeta == DEFAULT_DEPTHS {
+    if kind == ReferenceKind::Textbook(TextbookProblem::Injection) && arguments.zeta == DEFAULT_DEPTHS {
         // The source itself, where the pressure is infinite.
         depths.retain(|zeta| *zeta < 1.0);
     }
@@ -194,7 +194,7 @@ fn column_rows(
         )));
     }
     // Where what is typed changes the stress alone, it is printed.
-    let has_stress = matches!(kind, ReferenceKind::Shelf(_)) || parameters.self_weight;
+    let has_stress = matches!(kind, ReferenceKind::Textbook(_)) || parameters.self_weight;
     let mut rows = Vec::new();
     for &time_factor in time_factors {
         let settlement = reference.settlement(time_factor)?;

@@ -4,9 +4,9 @@ use crate::case::contender::CONTENDERS;
 use crate::case::method_words::parts;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::print_data;
-use crate::study::diagnostic::nearest;
 use crate::study::shipped::{shipped_names, shipped_study, shipped_titles};
-use oedometer_exact::{ReferenceKind, ShelfProblem};
+use oedometer_exact::{ReferenceKind, TextbookProblem};
+use oedometer_input::nearest::nearest;
 use oedometer_problem::integrator::IntegratorKind;
 use oedometer_problem::method::Method;
 use oedometer_scenes::{SCENES, Scene};
@@ -53,7 +53,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         writeln!(out, "  {}", kind.name())?;
     }
     writeln!(out, "exact solutions without a solver in this program")?;
-    for problem in ShelfProblem::ALL {
+    for problem in TextbookProblem::ALL {
         writeln!(out, "  {problem}")?;
     }
     writeln!(out, "built-in studies")?;

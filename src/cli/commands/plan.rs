@@ -14,10 +14,10 @@ use crate::cli::progress::{note_on_longest, side_by_side};
 use crate::cli::running::jobs_of;
 use crate::cli::study_files::load;
 use crate::foreign::case_file::CaseFile;
-use crate::record::whole_file::write_whole;
+use crate::record::atomic_file::write_atomically;
 use crate::render::table::{Cell, Table, columns};
 use crate::study::check::Study;
-use oedometer_soil::wording::{count_of, duration};
+use oedometer_wording::{count_of, duration};
 use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 
@@ -107,7 +107,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     if let Some(folder) = &arguments.case_files {
         for file in case_files_of(&wanted) {
-            write_whole(&folder.join(&file.case).join("case.json"), file.text()?.as_bytes())?;
+            write_atomically(&folder.join(&file.case).join("case.json"), file.text()?.as_bytes())?;
         }
     }
     if count == 0 && arguments.missing.is_some() {

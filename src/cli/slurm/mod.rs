@@ -14,11 +14,11 @@ use crate::cli::job_list::{JobList, missing_of};
 use crate::cli::output::{print_data, say};
 use crate::cli::slurm::scheduler::{Job, Scripts, cancel, merge_words, most_tasks, submit};
 use crate::cli::study_files;
+use crate::record::atomic_file::write_atomically;
 use crate::record::store::RecordStore;
-use crate::record::whole_file::write_whole;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -143,7 +143,7 @@ impl<'a> Campaign<'a> {
             studies.iter().map(|study| folder.join(format!("{}.toml", study.name))).collect();
         if !arguments.dry_run {
             for (source, copy) in sources.iter().zip(&copies) {
-                write_whole(copy, source.text.as_bytes())?;
+                write_atomically(copy, source.text.as_bytes())?;
             }
         }
         let studies: Vec<(&Study, Vec<&Case>)> =

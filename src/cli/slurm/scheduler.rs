@@ -4,7 +4,7 @@ use crate::cli::exit::{Ended, Exit};
 use crate::cli::job_list::{JobList, quoted};
 use crate::cli::output::say;
 use crate::cli::slurm::{ClusterArguments, FOLDER};
-use crate::record::whole_file::write_whole;
+use crate::record::atomic_file::write_atomically;
 use oedometer_formats::input_file;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -44,7 +44,7 @@ impl Job {
     /// # Errors
     /// When the file system refuses.
     pub fn keep(&self, path: &Path) -> anyhow::Result<()> {
-        Ok(write_whole(path, format!("{}\n{}\n", self.array, self.merge).as_bytes())?)
+        Ok(write_atomically(path, format!("{}\n{}\n", self.array, self.merge).as_bytes())?)
     }
 
     /// The job of such a file, where its array is not over yet.
@@ -230,8 +230,8 @@ impl Scripts {
     /// # Errors
     /// When the file system refuses.
     pub fn write(&self) -> anyhow::Result<()> {
-        write_whole(Path::new(&self.path("array.sh")), self.array.as_bytes())?;
-        Ok(write_whole(Path::new(&self.path("merge.sh")), self.merge.as_bytes())?)
+        write_atomically(Path::new(&self.path("array.sh")), self.array.as_bytes())?;
+        Ok(write_atomically(Path::new(&self.path("merge.sh")), self.merge.as_bytes())?)
     }
 
     /// What submits the array of some shares, behind `sbatch`.

@@ -4,7 +4,7 @@
 pub mod long_tables;
 pub mod tidy;
 
-use crate::record::whole_file::{StoreError, write_streamed};
+use crate::record::atomic_file::{StoreError, write_streamed};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use rayon::prelude::*;

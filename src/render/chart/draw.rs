@@ -6,12 +6,12 @@ use crate::render::chart::ends::{end_names, end_names_width};
 use crate::render::chart::looks::{Legend, Look, draw_marker, looks};
 use crate::render::chart::multiples::{SIDE_BY_SIDE, side_by_side};
 use crate::render::chart::rows;
-use crate::render::chart::slots::TWIN;
 use crate::render::chart::svg::{
     Font, NARROW, Px, document, group, layer, line, scripted, stroke, units, write,
 };
 use crate::render::chart::words::{Frame, Space, rules, triangles};
 use crate::render::chart::{Chart, Naming, Series, Style};
+use crate::render::palette::TWIN;
 use crate::render::palette::{FINE_GRID, FRAME, GRID, QUIET, SCREEN, TEXT};
 use crate::render::script::{width, wrap};
 use plotters::chart::{ChartBuilder, LabelAreaPosition};

@@ -1,11 +1,12 @@
 //! Markers and dashes by number, and the legend. Any two of the first six series differ in all three, so that
 //! the colour-blind and readers of grey paper can tell them apart.
 use crate::case::grouping::distinct;
-use crate::render::chart::slots::colour_and_shape;
 use crate::render::chart::svg::{
     Area, Drawn, Font, Px, group, layer, line, polygon, spot, stroke, units, write,
 };
-use crate::render::chart::{Chart, Naming, Series, Style, slots};
+use crate::render::chart::{Chart, Naming, Series, Style};
+use crate::render::palette::colour_and_shape;
+use crate::render::palette::slots;
 use crate::render::palette::{FRAME, SCREEN, SERIES, TEXT, THEORY};
 use crate::render::script::{width, wrap};
 use plotters::element::Circle;

@@ -9,12 +9,10 @@ mod ends;
 mod looks;
 mod multiples;
 mod rows;
-mod slots;
 mod svg;
 mod words;
 
 pub use crate::render::chart::rows::{ChartRow, ChartRows};
-pub use crate::render::chart::slots::slots;
 
 use crate::render::chart::axis::{Scale, drawable};
 use crate::render::escape::csv_field;

@@ -4,7 +4,8 @@
 use crate::case::grouping::{distinct, grouped};
 use crate::render::chart::draw::ends;
 use crate::render::chart::svg::Px;
-use crate::render::chart::{Chart, Series, Style, slots};
+use crate::render::chart::{Chart, Series, Style};
+use crate::render::palette::slots;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 

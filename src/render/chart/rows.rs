@@ -299,8 +299,8 @@ fn told(chart: &Chart, place: usize, row: &ChartRow) -> String {
     let series = chart.series.iter().enumerate().map(|(number, series)| {
         let at = series.points.iter().find(|(_, at)| *at == place as f64);
         let word = row.without.get(number).map_or("", String::as_str);
-        let value =
-            at.map_or_else(|| word.to_owned(), |(x, _)| format!("× {}", crate::render::number::short(*x)));
+        let value = at
+            .map_or_else(|| word.to_owned(), |(x, _)| format!("× {}", crate::render::number::two_digits(*x)));
         format!("{}: {value}", series.name)
     });
     format!("{}: {}. {}", row.name, row.words.join(", "), series.collect::<Vec<_>>().join("; "))

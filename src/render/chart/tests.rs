@@ -3,7 +3,8 @@
 
 mod gallery;
 
-use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle, Style, slots};
+use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle, Style};
+use crate::render::palette::slots;
 use gallery::{convergence, gallery, nothing};
 
 fn svg(chart: &Chart) -> String {

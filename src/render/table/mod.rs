@@ -3,7 +3,7 @@
 mod writers;
 
 use crate::render::{RenderError, number};
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 
 /// A table.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -258,7 +258,7 @@ impl Cell {
             Self::Percent(v) => number::percent(*v),
             Self::Bound(v) => number::bound(*v),
             Self::Seconds(v) => number::seconds(*v),
-            Self::Number(v) => number::number(*v),
+            Self::Number(v) => number::rounded(*v),
             Self::Measured(v) => number::significant(*v, 3),
             Self::Verdict(mood, text) => format!("{} {text}", mood.mark()),
             Self::Missing(_) => "–".to_owned(),

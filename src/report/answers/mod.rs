@@ -21,7 +21,7 @@ use crate::render::table::{Mood, Table};
 use crate::report::history_tables::comparison_tables;
 use crate::report::sections::{links_to, section};
 use oedometer_exact::ExactError;
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 use serde::Serialize;
 
 /// What the answer page is made of.
@@ -117,7 +117,7 @@ fn program_of(origin: &Provenance) -> String {
 const MOST_ROWS: usize = 10;
 
 /// The first rows of a table, with a line on where the others are.
-fn short(mut table: Table, elsewhere: &str) -> Table {
+fn first_rows(mut table: Table, elsewhere: &str) -> Table {
     let more = table.rows.len().saturating_sub(MOST_ROWS);
     table.rows.truncate(MOST_ROWS);
     if more > 0 { table.note(format!("{more} more: {elsewhere}")) } else { table }
@@ -197,8 +197,8 @@ pub fn changes_section(changes: &[StudyComparison]) -> Result<Section, RenderErr
     let sentence = sentence::filled(include_str!("changes.md"), &Changes { changed: changes.len(), worse })?;
     let tables = comparison_tables(changes, ["the golden values", "this report"]);
     let shown = tables.into_iter().filter(|_| !changes.is_empty());
-    let shown =
-        shown.map(|table| Block::Table(short(table, "listed by `oedometer compare` and `oedometer check`")));
+    let shown = shown
+        .map(|table| Block::Table(first_rows(table, "listed by `oedometer compare` and `oedometer check`")));
     let blocks = std::iter::once(Block::Paragraph(sentence)).chain(shown).collect();
     Ok(Section::new("What changed?", CHANGES, blocks))
 }
@@ -226,9 +226,9 @@ mod tests {
     fn a_table_of_the_answers_ends_after_ten_rows_and_says_where_the_others_are() {
         let table =
             |rows: usize| Table::of("", columns("a"), (0..rows).map(|row| vec![Cell::Count(row as u64)]));
-        let cut = short(table(12), "in the studies");
+        let cut = first_rows(table(12), "in the studies");
         assert_eq!((cut.rows.len(), cut.notes.as_slice()), (10, &["2 more: in the studies".to_owned()][..]));
-        assert_eq!(short(table(10), "in the studies"), table(10));
+        assert_eq!(first_rows(table(10), "in the studies"), table(10));
     }
 
     #[test]

@@ -14,8 +14,9 @@ use crate::race::finish::{Budget, RaceQuantity, Reason, Terms};
 use crate::race::group::{Group, races};
 use crate::race::situation::{Entry, Situation};
 use crate::record::race_errors::{ARRIVED, ReadOut};
-use crate::render::chart::{Chart, ChartAxis, Naming, Series, Size, Style, slots};
+use crate::render::chart::{Chart, ChartAxis, Naming, Series, Size, Style};
 use crate::render::page::{Block, Figure, Page, Section};
+use crate::render::palette::slots;
 use crate::render::table::{Cell, Mood, Shade, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
 use crate::report::answers::Answers;
@@ -295,7 +296,7 @@ fn matrix(situations: &[Situation], read_out: ReadOut) -> Table {
             let arrival = situation.arrival(entry, &terms);
             let cost = arrival.as_ref().map(|one| one.cost);
             let (shade, words) = match (cost.zip(least), situation.reason(entry, &terms)) {
-                (Some((cost, least)), _) => (Shade::of_ratio(cost / least), number::short(1e3 * cost)),
+                (Some((cost, least)), _) => (Shade::of_ratio(cost / least), number::two_digits(1e3 * cost)),
                 (_, Some(Reason::NotApplicable)) => (Shade::Empty, "–".to_owned()),
                 (_, reason) => (Shade::Failed, reason.map_or("", Reason::shown).to_owned()),
             };

@@ -5,7 +5,7 @@ use crate::judge::explanation::Explanation;
 use crate::record::Record;
 use crate::render::table::{Cell, Table, columns};
 use crate::report::tables::golden_changes::differences_table;
-use oedometer_soil::wording::short;
+use oedometer_wording::rounded;
 
 /// Places of the errors and changes of a case.
 pub fn tables_of(record: &Record, explanation: &Explanation) -> Vec<Table> {
@@ -82,7 +82,7 @@ pub fn attached_notes(record: &Record) -> Vec<String> {
         format!("run by `{}`{version}", about.command.join(" "))
     });
     let most = about.repeats_differ_by;
-    notes.extend(most.map(|most| format!("results of repeated runs differ by at most {}", short(most))));
+    notes.extend(most.map(|most| format!("results of repeated runs differ by at most {}", rounded(most))));
     notes.extend(about.notes.iter().cloned());
     notes.extend(about.taken.iter().map(|taken| format!("taken: {taken}")));
     notes

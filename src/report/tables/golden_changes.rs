@@ -4,7 +4,7 @@ use crate::golden::compare::{CaseChange, Change, Difference, DifferenceGroup};
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
 use oedometer_convergence::ParetoChange;
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 use std::fmt::Write;
 
 /// Differences shown in a table before the rest is only counted.
@@ -34,7 +34,7 @@ pub(crate) fn summary(group: &DifferenceGroup) -> String {
         let _ = write!(sentence, ", all of {}", shared(&group.shared_by_measures));
     }
     let _ = match (group.worst.growth(), group.worst.relative_change()) {
-        (Some(times), _) => write!(sentence, "; the largest is {} times as large", number::number(times)),
+        (Some(times), _) => write!(sentence, "; the largest is {} times as large", number::rounded(times)),
         (None, Some(change)) => write!(sentence, "; largest relative change {}", number::error(change)),
         (None, None) => Ok(()),
     };

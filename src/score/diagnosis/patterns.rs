@@ -6,7 +6,7 @@ use super::search::{FLOOR, Limit, Mistake};
 use super::{NO_MISTAKE, listed, shown};
 use crate::score::coverage::lines;
 use oedometer_soil::elementary::powi;
-use oedometer_soil::wording::short;
+use oedometer_wording::rounded;
 
 /// Most samples in a row that have one sign of an alternating pressure: those of a cell.
 const LONGEST: usize = 4;
@@ -87,7 +87,7 @@ fn blank(column: &Column, exact: &[f64], given: &Given<'_>, limit: &Limit) -> Op
         _ => (String::new(), if given.are_picked { MID_SIDE } else { missing }),
     };
     let looked = if given.are_picked { " looked at" } else { "" };
-    let [value, blanks, seen] = [short(blank), blanks.len().to_string(), seen.len().to_string()];
+    let [value, blanks, seen] = [rounded(blank), blanks.len().to_string(), seen.len().to_string()];
     let said = format!(
         "is exactly {value} at {blanks} of {seen} samples{looked}{place} where it should not be, and right at the others"
     );
@@ -182,9 +182,9 @@ pub fn content(column: &Column, given: &Given<'_>) -> Option<String> {
         };
         Some(format!("your {name} is 0 everywhere: is it the wrong array{or}?"))
     } else if values.len() > 1 && values.iter().all(|value| (value / first - 1.0).abs() <= 1e-9) {
-        Some(format!("your {name} is {} at all places and times: is it the wrong array?", short(first)))
+        Some(format!("your {name} is {} at all places and times: is it the wrong array?", rounded(first)))
     } else {
-        let first = short(first);
+        let first = rounded(first);
         let told = format!("your {name} counts from {first} by ones: are these node or cell numbers?");
         column.own_outputs().into_iter().all(counts).then_some(told)
     }
@@ -220,10 +220,10 @@ pub fn place(column: &Column, given: &Given<'_>) -> Option<String> {
         && column.size(&differs, None) <= SAME * column.size(&off, None);
     let what = match lines(&column.heights, height).into_iter().find(is_row) {
         _ if off.len() < FEWEST => return None,
-        Some(row) => format!("nearly all of it sits at y = {} m", short(row)),
+        Some(row) => format!("nearly all of it sits at y = {} m", rounded(row)),
         None if is_same && off.len() > first => "the difference is the same at all outputs".to_owned(),
         None => return None,
     };
-    let percent = short((100.0 * column.residual).round());
+    let percent = rounded((100.0 * column.residual).round());
     Some(format!("your {} is off by {percent} %, and {NO_MISTAKE}: {what}", column.name))
 }

@@ -5,7 +5,7 @@ use crate::score::score_series::{ScoredSeries, series_of};
 use crate::score::{Score, score};
 use oedometer_convergence::Class;
 use oedometer_exact::{ExactError, ReferenceKind};
-use oedometer_soil::wording::{count_of, short};
+use oedometer_wording::{count_of, rounded};
 
 /// Share of its error on the finest mesh that a series has left against the right reference, at most.
 const LEFT: f64 = 0.5;
@@ -92,7 +92,7 @@ impl Results<'_> {
             open.len(),
             count_of(of_own.len(), "series does", "series do"),
             first.measure.quantity.name(),
-            short(first.measure.time_factor),
+            rounded(first.measure.time_factor),
         )))
     }
 }

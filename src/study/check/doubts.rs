@@ -2,7 +2,7 @@
 //! rests on an unknown value is not said.
 
 use crate::study::diagnostic::Diagnostic;
-use oedometer_foreign::mending::{Block, LeftOut};
+use oedometer_input::mending::{Block, LeftOut};
 use std::ops::Range;
 use toml::de::DeTable;
 

@@ -19,7 +19,7 @@ use oedometer_problem::outcome::FailureKind;
 use oedometer_scenes::Scene;
 use oedometer_scenes::column::Column;
 use oedometer_scenes::scene::{LoadKind, Question};
-use oedometer_soil::wording::count_of;
+use oedometer_wording::count_of;
 use std::ops::Range;
 
 /// Half-width of an order's band where an expectation names none.

@@ -13,7 +13,7 @@ use oedometer_scenes::column::column_parameters;
 use oedometer_scenes::scene::{Body, Clock};
 use oedometer_scenes::{SCENES, Scene};
 use oedometer_soil::layers::{MOST_LAYERS, SoilLayer, SoilLayers};
-use oedometer_soil::wording::short;
+use oedometer_wording::rounded;
 use std::ops::Range;
 
 /// Young's moduli of soils, from soft peat to rock, Pa.
@@ -192,7 +192,10 @@ impl Checker<'_> {
             let error = ExactError::LayersDoNotFill { sum, height };
             let (thickness, rest) = (last.thickness, height - sum);
             let help = if thickness + rest > 0.0 {
-                format!("make the last layer {} m thick, or the column {sum} m high", short(thickness + rest))
+                format!(
+                    "make the last layer {} m thick, or the column {sum} m high",
+                    rounded(thickness + rest)
+                )
             } else {
                 format!("make the column {sum} m high, or the layers thinner")
             };
@@ -277,16 +280,16 @@ impl Checker<'_> {
             load.clone(),
             format!(
                 "with E = {} Pa, ν = {} and n = {} the load {} Pa strains the column by {}: the pores close at {}",
-                short(soil.youngs_modulus),
+                rounded(soil.youngs_modulus),
                 soil.poissons_ratio,
                 soil.porosity,
-                short(case.column.load),
-                short(strain),
+                rounded(case.column.load),
+                rounded(strain),
                 soil.porosity
             ),
             format!(
                 "use a load below {} Pa, or instead of it a `strain` in [column] below {}",
-                short(load_of(soil.porosity, case)),
+                rounded(load_of(soil.porosity, case)),
                 soil.porosity
             ),
         );
@@ -398,9 +401,9 @@ impl Checker<'_> {
                 place,
                 format!(
                     "`{key}` = {} {unit} is outside the range of soils, {} to {} {unit}",
-                    short(odd),
-                    short(least),
-                    short(most)
+                    rounded(odd),
+                    rounded(least),
+                    rounded(most)
                 ),
                 format!("write the unit if it is {other}, as in \"5 MPa\" or \"1e-9 m/s\""),
             ));

@@ -24,7 +24,7 @@ use crate::study::reading::Placed;
 use crate::study::shipped::name_of;
 use crate::study::solver::ExternalSolver;
 use oedometer_exact::reference::ReferenceKind;
-use oedometer_foreign::mending::{Rest, Unread};
+use oedometer_input::mending::{Rest, Unread};
 use oedometer_problem::integrator::Formulation;
 use oedometer_problem::method::Configuration;
 use oedometer_scenes::Scene;

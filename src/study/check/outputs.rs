@@ -6,7 +6,7 @@ use crate::study::check::Checker;
 use crate::study::check::doubts::Basis;
 use crate::study::expectation::Selection;
 use crate::study::reading::{Placed, Typed};
-use oedometer_soil::wording::{clock_time, count_of, duration, typed};
+use oedometer_wording::{clock_time, count_of, duration, typed};
 use std::ops::{Range, RangeInclusive};
 
 /// Least time factor beside the undrained start: of shorter times steps no longer advance the sum.

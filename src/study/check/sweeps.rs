@@ -13,7 +13,7 @@ use crate::study::inputs::{One, TypedInput};
 use crate::study::reading::Placed;
 use oedometer_problem::integrator::IntegratorKind;
 use oedometer_scenes::scene::Body;
-use oedometer_soil::wording::duration;
+use oedometer_wording::duration;
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hasher};
 use std::ops::Range;

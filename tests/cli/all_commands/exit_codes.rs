@@ -3,7 +3,7 @@
 use crate::program::{call, folder_with};
 use oedometer::scenes::SCENES;
 use oedometer::{IntegratorKind, Method};
-use oedometer_exact::{ReferenceKind, ShelfProblem};
+use oedometer_exact::{ReferenceKind, TextbookProblem};
 use std::fs;
 use tempfile::TempDir;
 
@@ -160,7 +160,7 @@ fn all_names_are_listed_under_their_headings() {
                 "references",
                 with_nothing(&ReferenceKind::ALL.iter().map(|kind| kind.name()).collect::<Vec<_>>())
             ),
-            ("exact solutions without a solver in this program", with_nothing(&ShelfProblem::NAMES)),
+            ("exact solutions without a solver in this program", with_nothing(&TextbookProblem::NAMES)),
         ]
     );
 }

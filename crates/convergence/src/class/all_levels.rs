@@ -10,7 +10,7 @@ use crate::fit::Exponent;
 use crate::fit::two_terms::two_coefficients;
 use crate::orders::quantile_975;
 use oedometer_soil::elementary::{exp, ln, powf, powi};
-use oedometer_soil::wording::{order, orders, short};
+use oedometer_wording::{order, orders, rounded};
 
 /// Levels from which on a second term shows beside the first.
 const LEAST_LEVELS: usize = 5;
@@ -291,7 +291,7 @@ fn classified(case: &EvaluableSeries, candidate: &Candidate) -> Option<Classific
                 "{window}, and all {levels} levels follow h^{} ln(1/h): the order is {} below its limit at size {}",
                 order(candidate.first_order),
                 order(candidate.lowering(finest)),
-                short(case.finest().0)
+                rounded(case.finest().0)
             );
             let advice = "look for a singular point or a sudden load: a logarithmic term fades slowly";
             let classification = Classification::new(Class::PreAsymptotic, reason).advise(advice);

@@ -9,7 +9,7 @@ use crate::fit::floor::LimiterKind;
 use crate::fit::odd_level::odd_level;
 use crate::orders::{WINDOW, pair_orders};
 use crate::series::{ErrorSeries, Undefined};
-use oedometer_soil::wording::{orders, short};
+use oedometer_wording::{orders, rounded};
 
 /// Neighbouring sizes closer than this give no order worth quoting: at a ratio of 1.1 an error
 /// in the error of 1 % is one of 0.1 in the order. (Celik et al. 2008 ask for 1.3.)
@@ -84,7 +84,7 @@ fn wrong_context(context: &Context) -> Option<Classification> {
     ];
     given.into_iter().find_map(|(name, value)| {
         let wrong = value.filter(|value| !value.is_finite() || *value <= 0.0)?;
-        let reason = format!("the {name} {} is invalid: expected a positive number", short(wrong));
+        let reason = format!("the {name} {} is invalid: expected a positive number", rounded(wrong));
         Some(Classification::new(Class::NotEvaluable, reason))
     })
 }
@@ -112,7 +112,7 @@ fn exact(series: &ErrorSeries, context: &Context) -> Option<Classification> {
     let errors: Vec<f64> =
         series.levels().iter().filter_map(|level| level.error.filter(is_round_off)).collect();
     (!errors.is_empty() && errors.len() == series.levels().len()).then(|| {
-        let largest = short(errors.iter().copied().fold(0.0, f64::max));
+        let largest = rounded(errors.iter().copied().fold(0.0, f64::max));
         Classification::new(Class::Exact, format!("every error is round-off: the largest is {largest}"))
             .advise("check that the result is not compared with itself; only a harder problem shows an order")
     })
@@ -125,7 +125,7 @@ fn not_evaluable(series: &ErrorSeries) -> Option<Classification> {
         Some(Undefined::Vanishing { size }) => {
             let reason = format!(
                 "the error at size {} vanishes while the others do not: no discretisation does that",
-                short(size)
+                rounded(size)
             );
             let advice = "check whether that level was compared with itself, or was not run";
             return Some(Classification::new(Class::NotEvaluable, reason).advise(advice));
@@ -141,7 +141,7 @@ fn not_evaluable(series: &ErrorSeries) -> Option<Classification> {
         None => {
             let close = levels.windows(2).find(|pair| pair[0].size < LEAST_RATIO * pair[1].size)?;
             let ratio = close[0].size / close[1].size;
-            let [coarse, fine] = [close[0], close[1]].map(|level| short(level.size));
+            let [coarse, fine] = [close[0], close[1]].map(|level| rounded(level.size));
             format!(
                 "sizes {coarse} and {fine} are too close for an order: their ratio is {ratio:.3}, but \
                  {LEAST_RATIO} is needed"
@@ -169,7 +169,7 @@ impl EvaluableSeries<'_> {
     /// Names a level that the others contradict: the window of the finest levels may not see it.
     fn with_odd_level(&self, classification: Classification) -> Classification {
         let Some(odd) = odd_level(self.points) else { return classification };
-        let [size, factor] = [odd.size, odd.factor].map(short);
+        let [size, factor] = [odd.size, odd.factor].map(rounded);
         let reason = format!(
             "{}; the level of size {size} is an outlier: its error is {factor} times the value that the others suggest",
             classification.reason
@@ -207,7 +207,7 @@ impl EvaluableSeries<'_> {
         if changes(&self.values[self.values.len() - WINDOW..]) == 0 {
             return None;
         }
-        let values: Vec<String> = self.values.iter().map(|value| short(value.1)).collect();
+        let values: Vec<String> = self.values.iter().map(|value| rounded(value.1)).collect();
         let values = values.join(", ");
         let times = changes(&self.values);
         Some(if times > 1 {
@@ -235,7 +235,7 @@ impl EvaluableSeries<'_> {
         let [.., size, error] = self.ends();
         let reason = format!(
             "the errors of the finest levels, {error} at size {size}, do not fall and lie within a tolerance of {}",
-            short(tolerance)
+            rounded(tolerance)
         );
         let mut classification = self.limited(&reason);
         if let Some(floor) = &mut classification.floor {
@@ -267,8 +267,8 @@ impl EvaluableSeries<'_> {
     fn round_off(&self, context: &Context) -> Option<Classification> {
         let round_off = context.round_off.filter(|round_off| self.finest().1 <= *round_off)?;
         let [.., size, error] = self.ends();
-        let mut classification =
-            self.limited(&format!("the error at size {size}, {error}, is round-off ({})", short(round_off)));
+        let mut classification = self
+            .limited(&format!("the error at size {size}, {error}, is round-off ({})", rounded(round_off)));
         if let Some(floor) = &mut classification.floor {
             floor.limiter = Some(LimiterKind::RoundOff);
         }
@@ -295,7 +295,7 @@ impl EvaluableSeries<'_> {
 
     fn standstill(&self) -> String {
         let (before, earlier) = self.points[self.points.len() - 2];
-        let [before, earlier] = [before, earlier].map(short);
+        let [before, earlier] = [before, earlier].map(rounded);
         let [.., size, error] = self.ends();
         format!("refining from size {before} to {size} leaves the error at {error} (was {earlier})")
     }
@@ -317,7 +317,7 @@ impl EvaluableSeries<'_> {
             return Some(self.cancelled(&fit));
         }
         let least = self.points.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let [size, error] = [least.0, least.1].map(short);
+        let [size, error] = [least.0, least.1].map(rounded);
         let reason = format!("the error falls to {error} at size {size} and grows again to {last} at {fine}");
         Some(Classification::new(Class::Divergent, reason).advise(
             "check stability on the fine levels, and look for two errors of opposite sign that cancel",
@@ -342,7 +342,7 @@ impl EvaluableSeries<'_> {
         let least = self.points.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
         let accuracy = context.reference_accuracy.filter(|accuracy| 10.0 * accuracy > least)?;
         (!judged.contains(&classification.class)).then(|| {
-            let [accuracy, least] = [accuracy, least].map(short);
+            let [accuracy, least] = [accuracy, least].map(rounded);
             let reason =
                 format!("the reference is only accurate to {accuracy}, and the smallest error is {least}");
             Classification::new(Class::NotEvaluable, reason).advise(

@@ -6,7 +6,7 @@ use crate::fit::floor::{Limiter, LimiterKind, advice, fit_floor, identify};
 use crate::orders::{WINDOW, log_ratio, pair_order, slope_of};
 use crate::series::Undefined;
 use oedometer_soil::elementary::powf;
-use oedometer_soil::wording::{order, short};
+use oedometer_wording::{order, rounded};
 use std::f64::consts::LN_2;
 
 /// A series that can be evaluated, with the numbers that the checks share.
@@ -86,7 +86,7 @@ impl<'a> EvaluableSeries<'a> {
     /// Sizes and errors of the coarsest and the finest level, in words.
     pub fn ends(&self) -> [String; 4] {
         let (coarse, fine) = (self.coarsest(), self.finest());
-        [coarse.0, coarse.1, fine.0, fine.1].map(short)
+        [coarse.0, coarse.1, fine.0, fine.1].map(rounded)
     }
 
     /// Size and error of the finest level.
@@ -128,7 +128,7 @@ impl<'a> EvaluableSeries<'a> {
         let limits_from = self.points.iter().find(|(_, error)| *error <= 2.0 * value);
         let limits_from = limits_from.map_or(self.finest().0, |point| point.0);
         let cause = put_down_to(limiter);
-        let reason = format!("{reason} limits the levels from size {} on{cause}", short(limits_from));
+        let reason = format!("{reason} limits the levels from size {} on{cause}", rounded(limits_from));
         let target = target.filter(|target| *target > 0.0);
         let floor = Floor { value, fitted, limits_from, limiter: limiter.map(|limiter| limiter.kind) };
         Classification { order, floor: Some(floor), ..Classification::new(Class::FloorLimited, reason) }
@@ -138,7 +138,7 @@ impl<'a> EvaluableSeries<'a> {
     /// A converging error and a plateau of opposite sign that cancel at one level.
     pub fn cancelled(&self, fit: &CancellingFit) -> Classification {
         let target = 0.1 * fit.coefficient * powf(self.finest().0, fit.order);
-        let [size, floor] = [fit.cancels_at, fit.floor].map(short);
+        let [size, floor] = [fit.cancels_at, fit.floor].map(rounded);
         let reason = format!(
             "the error falls, cancels near size {size} and grows again to a plateau of {floor} with \
              opposite sign, which"
@@ -148,7 +148,8 @@ impl<'a> EvaluableSeries<'a> {
 
     /// The first and the last value, in words.
     fn first_to_last(&self) -> String {
-        let [first, last] = [self.values[0], self.values[self.values.len() - 1]].map(|value| short(value.1));
+        let [first, last] =
+            [self.values[0], self.values[self.values.len() - 1]].map(|value| rounded(value.1));
         format!("the error goes from {first} to {last}")
     }
 
@@ -160,7 +161,7 @@ impl<'a> EvaluableSeries<'a> {
              predict: a plateau that",
             self.first_to_last(),
             order(approach.order),
-            short(approach.limit)
+            rounded(approach.limit)
         );
         self.over_floor(&reason, Some(approach.order), Some(target), (approach.limit.abs(), true))
     }
@@ -171,12 +172,15 @@ impl<'a> EvaluableSeries<'a> {
         let reason = format!(
             "{} as if towards a limit of {} at order {}: {} levels cannot distinguish a limit from growth",
             self.first_to_last(),
-            short(approach.limit),
+            rounded(approach.limit),
             order(approach.order),
             self.points.len()
         );
-        let advice =
-            format!("add a level: at size {} the limit predicts {}", short(next), short(approach.at(next)));
+        let advice = format!(
+            "add a level: at size {} the limit predicts {}",
+            rounded(next),
+            rounded(approach.at(next))
+        );
         Classification::new(Class::PreAsymptotic, reason).advise(advice)
     }
 
@@ -188,7 +192,7 @@ impl<'a> EvaluableSeries<'a> {
             "{reason}; {} levels cannot distinguish a plateau of about {}{suspect} from an order that has \
              not settled",
             self.points.len(),
-            short(height)
+            rounded(height)
         );
         Classification::new(Class::PreAsymptotic, reason).advise(if self.points.len() < FLOOR_LEVELS {
             "add a finer level: a plateau shows only on four"
@@ -209,7 +213,7 @@ impl<'a> EvaluableSeries<'a> {
         let value = fit.map_or(error, |fit| fit.floor);
         let target = fit.map(|fit| 0.1 * fit.coefficient * powf(size, fit.order));
         let height = if fit.is_some() { "a plateau of" } else { "a plateau not above" };
-        let reason = format!("{reason}; {height} {}", short(value));
+        let reason = format!("{reason}; {height} {}", rounded(value));
         self.over_floor(&reason, fit.map(|fit| fit.order), target, (value, fit.is_some()))
     }
 }

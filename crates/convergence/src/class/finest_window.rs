@@ -3,7 +3,7 @@
 use crate::class::evaluable_series::{EvaluableSeries, FLOOR_LEVELS};
 use crate::class::{Class, Classification};
 use crate::fit::bending_order::{Bend, explain};
-use oedometer_soil::wording::{order, orders, short};
+use oedometer_wording::{order, orders, rounded};
 
 /// An observed order this close to the formal one counts as the formal one.
 const FORMAL_TOLERANCE: f64 = 0.25;
@@ -124,7 +124,7 @@ fn governed(case: &EvaluableSeries, bend: &Bend, window: &str) -> Option<Classif
             ),
             &terms.crossover().map_or_else(
                 || "it dominates every level".to_owned(),
-                |at| format!("the term of lower order dominates below size {}", short(at)),
+                |at| format!("the term of lower order dominates below size {}", rounded(at)),
             ),
         )),
         Bend::Higher(_) => None,

@@ -13,7 +13,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::fit::floor::{Limiter, LimiterKind};
-use oedometer_soil::wording::words;
+use oedometer_wording::words;
 
 /// How a series of errors behaves under refinement; decided before any order is quoted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

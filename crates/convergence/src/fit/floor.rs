@@ -7,7 +7,7 @@ use crate::orders::{SlopeFit, quantile_975, slope_of};
 use crate::series::{ErrorSeries, Undefined};
 use oedometer_soil::elementary;
 use oedometer_soil::elementary::{powf, powi};
-use oedometer_soil::wording::short;
+use oedometer_wording::rounded;
 use serde::{Deserialize, Serialize};
 
 /// Orders that a floor fit looks for.
@@ -165,7 +165,7 @@ pub(crate) fn advice(
         LimiterKind::Mesh => format!("refine the mesh by {factor}"),
         LimiterKind::PointsPerCell => format!("raise the points per cell by {factor}"),
         LimiterKind::Reference => {
-            let accuracy = short(target.unwrap_or(0.1 * floor));
+            let accuracy = rounded(target.unwrap_or(0.1 * floor));
             format!("use a reference that is accurate to {accuracy}, or stop refining")
         }
         LimiterKind::Model => format!(

@@ -76,7 +76,7 @@ impl Known {
         let unnamed = self.named.filter(|size| {
             !classification
                 .reason
-                .contains(&format!("level of size {} is an outlier", oedometer_soil::wording::short(*size)))
+                .contains(&format!("level of size {} is an outlier", oedometer_wording::rounded(*size)))
         });
         unnamed.map(|size| format!("{} without a word on size {size:.4}", classification.class))
     }
@@ -311,11 +311,8 @@ fn series_of_known_truth_get_their_class() {
                 match known.wrong(&classification) {
                     None => met += 1,
                     Some(complaint) => {
-                        let errors: Vec<_> = known
-                            .points
-                            .iter()
-                            .map(|point| oedometer_soil::wording::short(point.1))
-                            .collect();
+                        let errors: Vec<_> =
+                            known.points.iter().map(|point| oedometer_wording::rounded(point.1)).collect();
                         writeln!(
                             wrong,
                             "{kind}, ratio {ratio}, order {:?}: {complaint}: {}",

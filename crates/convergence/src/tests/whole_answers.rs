@@ -7,7 +7,7 @@ use crate::{
     OrderBand, SeriesDemand, SeriesLevel, ValueSeries, classify, finest_order, front, hidden_floor,
     pair_orders, slope,
 };
-use oedometer_soil::wording::short;
+use oedometer_wording::rounded;
 use serde_json::Value;
 use std::fmt::Write as _;
 
@@ -18,7 +18,7 @@ fn serialised(value: &impl serde::Serialize) -> String {
             // Residuals of exact fits are round-off.
             Value::Number(number) => match number.as_f64().expect("a number") {
                 tiny if tiny.abs() < 1e-13 => "0".to_owned(),
-                number => short(number),
+                number => rounded(number),
             },
             Value::Array(all) => format!("[{}]", all.iter().map(write).collect::<Vec<_>>().join(" ")),
             Value::Object(all) => {
@@ -34,11 +34,11 @@ fn serialised(value: &impl serde::Serialize) -> String {
 
 /// A number with as many digits as every machine has in common, or why there is none.
 fn number<E: ToString>(value: Result<f64, E>) -> String {
-    value.map_or_else(|obstacle| obstacle.to_string(), short)
+    value.map_or_else(|obstacle| obstacle.to_string(), rounded)
 }
 
 fn numbers(values: impl IntoIterator<Item = f64>) -> String {
-    values.into_iter().map(short).collect::<Vec<_>>().join(" ")
+    values.into_iter().map(rounded).collect::<Vec<_>>().join(" ")
 }
 
 /// Orders on both sides of every limit of the rules.
@@ -96,7 +96,7 @@ fn line(text: &mut String, context: &Context, points: &[(f64, f64)]) {
     write!(text, "{}", numbers(points.iter().map(|point| point.1))).expect("memory");
     for (name, value) in known {
         if let Some(value) = value {
-            write!(text, ", {name} {}", short(*value)).expect("memory");
+            write!(text, ", {name} {}", rounded(*value)).expect("memory");
         }
     }
     if !mobility.is_empty() {
@@ -106,7 +106,7 @@ fn line(text: &mut String, context: &Context, points: &[(f64, f64)]) {
         write!(text, ", limiters {}", serialised(limiters)).expect("memory");
     }
     let signs = if signed.is_empty() { "" } else { ", with signs" };
-    let floor = short(hidden_floor(&series, *formal_order));
+    let floor = rounded(hidden_floor(&series, *formal_order));
     writeln!(text, "{signs}\n    {}; hidden floor {floor}", serialised(&classify(&series, context)))
         .expect("memory");
 }
@@ -207,8 +207,8 @@ fn series_that_cannot_be_evaluated_say_why() {
         let series = ErrorSeries::new(sizes.iter().enumerate().map(level).collect());
         let orders: Vec<_> = pair_orders(&series).into_iter().map(number).collect();
         let fit = slope(&series).map(|fit| {
-            let width = fit.half_width.map_or("none".to_owned(), short);
-            format!("order {} ± {width}, {} of {}", short(fit.order), short(fit.coefficient), fit.levels)
+            let width = fit.half_width.map_or("none".to_owned(), rounded);
+            format!("order {} ± {width}, {} of {}", rounded(fit.order), rounded(fit.coefficient), fit.levels)
         });
         let fit = fit.unwrap_or_else(|obstacle| obstacle.to_string());
         let finest = number(finest_order(&series));
@@ -275,8 +275,8 @@ fn uncertainties_come_with_everything_they_are_derived_from() {
                 "{}; {} of {}, relative {}",
                 serialised(&uncertainty),
                 uncertainty.estimator.name(),
-                short(uncertainty.finest()),
-                short(uncertainty.relative())
+                rounded(uncertainty.finest()),
+                rounded(uncertainty.relative())
             ),
             Err(obstacle) => obstacle.to_string(),
         };

@@ -9,7 +9,7 @@ use crate::manufactured::dual::{Four, Jet, PLACES, Shape};
 use crate::parameters::MotionParameters;
 use oedometer_soil::elementary;
 use oedometer_soil::law::Law;
-use oedometer_soil::wording::words;
+use oedometer_wording::words;
 use std::f64::consts::PI;
 
 /// Most iterations for the inverse of a motion.

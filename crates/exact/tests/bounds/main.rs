@@ -16,7 +16,7 @@ mod routes;
 
 use oedometer_exact::large_strain::diffusion::{LargeStrainModel, Water};
 use oedometer_exact::manufactured::motion::{ManufacturedModel, Motion};
-use oedometer_exact::{Base, ColumnParameters, MotionParameters, Reference, ReferenceKind, ShelfProblem};
+use oedometer_exact::{Base, ColumnParameters, MotionParameters, Reference, ReferenceKind, TextbookProblem};
 use oedometer_soil::material::Material;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -113,7 +113,7 @@ const ROUTES: [(&str, Route); 27] = [
         routes::columns::terzaghi(ReferenceKind::TerzaghiIncompressible, numbers, &column)
     }),
     ("biot-column", |numbers, column| {
-        routes::columns::terzaghi(ReferenceKind::Shelf(ShelfProblem::BiotColumn), numbers, &column)
+        routes::columns::terzaghi(ReferenceKind::Textbook(TextbookProblem::BiotColumn), numbers, &column)
     }),
     ("single-mode", routes::columns::single_mode),
     ("xie-leo", |numbers, column| routes::columns::xie_leo(ReferenceKind::XieLeo, numbers, column)),

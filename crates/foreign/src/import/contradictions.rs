@@ -6,7 +6,7 @@
 
 use crate::import::origins::Origins;
 use crate::import::samples::{SAME_PLACE, SAME_VALUE, SampleRow};
-use oedometer_soil::wording::typed;
+use oedometer_wording::typed;
 use std::collections::HashMap;
 
 /// Largest relative distance of two states that may stand for one requested time.

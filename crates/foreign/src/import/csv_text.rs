@@ -2,8 +2,8 @@
 //! choice is left.
 
 use crate::import::mapping::TableLayout;
-use crate::units::is_unit;
 use oedometer_formats::{ImportError, bare_number, excerpt, input_file, with_exponent};
+use oedometer_input::units::is_unit;
 use std::path::Path;
 
 /// Separators in the order in which they are tried; a blank stands for any.

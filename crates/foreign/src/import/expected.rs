@@ -125,8 +125,8 @@ mod tests {
     use super::*;
     use crate::import::mapping::Axes;
     use crate::solver::Preset;
-    use crate::source::StudySource;
     use clap::ValueEnum;
+    use oedometer_input::source::StudySource;
 
     fn states(pressures: [usize; 3]) -> Vec<SampledState> {
         let state = |count| SampledState {

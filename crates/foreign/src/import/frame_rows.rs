@@ -705,8 +705,8 @@ pub fn cells_over_height(frame: &Frame, mapping: &Mapping, height: f64) -> Optio
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::source::StudySource;
     use oedometer_formats::Cells;
+    use oedometer_input::source::StudySource;
 
     #[test]
     fn cells_over_the_height_are_the_levels_of_corners_less_one() {

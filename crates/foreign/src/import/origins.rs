@@ -2,7 +2,7 @@
 
 use crate::import::mapping::{Column, Mapping};
 use crate::import::samples::SampleRow;
-use oedometer_soil::wording::{short, typed};
+use oedometer_wording::{rounded, typed};
 use std::path::{Path, PathBuf};
 
 /// Where a row was read: its part of the result, and its place there.
@@ -124,16 +124,16 @@ impl Origins {
         let [up, along] = self.axis;
         let across = match row.initial_distance {
             distance if distance.is_nan() => String::new(),
-            distance => format!(", {along} = {} m", short(distance)),
+            distance => format!(", {along} = {} m", rounded(distance)),
         };
-        format!("{up} = {} m{across}", short(row.initial_height))
+        format!("{up} = {} m{across}", rounded(row.initial_height))
     }
 
     /// Two values with their unit and as many digits as show that they differ.
     fn values(quantity: usize, rows: [&SampleRow; 2]) -> [String; 2] {
         let unit = if quantity < 2 { "Pa" } else { "m" };
         let values = rows.map(|row| row.values()[quantity]);
-        let rounded = values.map(short);
+        let rounded = values.map(rounded);
         let told = if rounded[0] == rounded[1] { values.map(typed) } else { rounded };
         told.map(|value| format!("{value} {unit}"))
     }

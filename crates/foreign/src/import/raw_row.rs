@@ -206,7 +206,7 @@ fn hydrostatic_pressure(mapping: &Mapping, body: SolvedBody, present: f64) -> f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::source::StudySource;
+    use oedometer_input::source::StudySource;
     use std::path::Path;
 
     #[test]

@@ -685,8 +685,8 @@ impl Run {
 mod tests {
     use super::*;
     use crate::import::mapping::Column;
-    use crate::source::StudySource;
     use oedometer_formats::Array;
+    use oedometer_input::source::StudySource;
 
     #[test]
     fn places_are_as_declared_or_as_found_and_what_lies_on_cells_is_at_no_node() {

@@ -3,7 +3,7 @@
 
 use crate::import::mapping::units::{StressUnit, TimeUnit};
 use crate::import::mapping::{Column, Mapping};
-use crate::units::size_of;
+use oedometer_input::units::size_of;
 
 /// What a unit makes of the numbers of a column.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,7 +58,7 @@ impl SaidUnit {
         let name = name.trim();
         let inside = name.strip_suffix(']').and_then(|rest| rest.rsplit_once('['));
         let inside = inside.or_else(|| name.strip_suffix(')').and_then(|rest| rest.rsplit_once('(')));
-        inside.map(|(_, unit)| unit.trim()).filter(|unit| crate::units::is_unit(unit))
+        inside.map(|(_, unit)| unit.trim()).filter(|unit| oedometer_input::units::is_unit(unit))
     }
 }
 

@@ -194,7 +194,7 @@ mod tests {
     /// The seconds that a mapping declares for a file, or what is said of it.
     fn declared(time: &str, unit: &str, name: &str, place: usize) -> Result<Option<f64>, String> {
         let text = format!("[units]\ntime = \"{unit}\"\n[time]\n{time}\n");
-        let source = crate::source::StudySource { name: "m.toml".to_owned(), text };
+        let source = oedometer_input::source::StudySource { name: "m.toml".to_owned(), text };
         let mapping = Mapping::read(&source).expect("a mapping");
         let body = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 250.0 };
         declared_time(Path::new("folder").join(name).as_path(), place, false, &mapping, body)

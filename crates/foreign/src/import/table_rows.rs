@@ -10,7 +10,7 @@ use crate::import::said_units::SaidUnit;
 use crate::import::samples::{SampleRow, SampledState, states_of};
 use crate::import::step_times::declared_time;
 use oedometer_formats::{ImportError, excerpt};
-use oedometer_soil::wording::typed;
+use oedometer_wording::typed;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};

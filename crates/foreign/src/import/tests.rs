@@ -5,7 +5,7 @@ use crate::import::mapping::preset::{CONVENTION, PLANE_CONVENTION};
 use crate::import::mapping::{Axes, Mapping, TableLayout};
 use crate::import::raw_row::SolvedBody;
 use crate::import::runs::runs_of;
-use crate::source::StudySource;
+use oedometer_input::source::StudySource;
 
 const STRANGE: &str = r#"
 [columns]

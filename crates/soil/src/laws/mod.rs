@@ -13,7 +13,7 @@ macro_rules! laws {
             $variant),+
         }
 
-        crate::wording::words!(Law: $($variant $word),+);
+        oedometer_wording::words!(Law: $($variant $word),+);
 
         impl Law {
             /// What it is.

@@ -18,7 +18,7 @@ use crate::study::overrides::{Asked, Outputs};
 use crate::study::solver::Preset;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_scenes::Scene;
-use oedometer_soil::wording::{count_of, typed};
+use oedometer_wording::{count_of, typed};
 use std::path::PathBuf;
 
 /// Columns behind those of the errors, for results on several meshes.

@@ -514,7 +514,7 @@ fn a_top_that_is_not_plane_is_told_with_its_ends_from_two_percent_of_the_settlem
         last.pressure.push(0.0);
         last.effective_stress.push(last.effective_stress[0]);
         last.displacement.push(other);
-        let (least, most) = (short(moved.min(other)), short(moved.max(other)));
+        let (least, most) = (rounded(moved.min(other)), rounded(moved.max(other)));
         let sentence = format!(
             "your top is not plane: at y = 1 m u_y lies between {least} and {most} m: are the sides on rollers, and does the \
              load press evenly?"

@@ -4,7 +4,7 @@ use crate::double::{Complex, Double, GAMMA, ONE, PI, c, d, inverse};
 use crate::routes::{Biot, columns::with_grains};
 use crate::{Compared, Numbers, compared, solution};
 use oedometer_exact::mandel::Mandel;
-use oedometer_exact::{ColumnParameters, ReferenceKind, ShelfProblem, Solution};
+use oedometer_exact::{ColumnParameters, ReferenceKind, Solution, TextbookProblem};
 
 /// From `C = −qE/(Ks) + 4Gα p̄/(3K)` and `P = −α C/(E S) (1 − sinh √s r/(r sinh √s))`.
 pub fn cryer(numbers: &mut Numbers, column: ColumnParameters) -> Option<Compared> {
@@ -22,14 +22,14 @@ pub fn cryer(numbers: &mut Numbers, column: ColumnParameters) -> Option<Compared
         let scale = c(soil.alpha * soil.diffusivity_ratio());
         [scale * sides * (c(ONE) - root.sinh_ratio(radius) / c(radius)), scale * sides * drained]
     });
-    let kind = ReferenceKind::Shelf(ShelfProblem::Cryer);
+    let kind = ReferenceKind::Textbook(TextbookProblem::Cryer);
     Some(compared(kind, &column, [time, zeta], [pressure, 1.0 - soil.alpha.value() * mean]))
 }
 
 /// A cylinder: inner radius over the outer one, and `c_v t/r_e²`.
 fn cylinder(numbers: &mut Numbers, column: &mut ColumnParameters, time: f64) -> [Double; 2] {
-    column.shelf.drain_radius = column.height * numbers.decades(-1.5, 0.3);
-    let (drain, height) = (d(column.shelf.drain_radius), d(column.height));
+    column.textbook.drain_radius = column.height * numbers.decades(-1.5, 0.3);
+    let (drain, height) = (d(column.textbook.drain_radius), d(column.height));
     let outer = drain + height;
     [drain / outer, d(time) * height * height / (outer * outer)]
 }
@@ -45,7 +45,7 @@ pub fn barron(numbers: &mut Numbers, mut column: ColumnParameters) -> Option<Com
     let radius = inner + (ONE - inner) * d(zeta);
     let profile = (radius / inner).ln() - (radius * radius - inner * inner) * d(0.5);
     let pressure = mean * profile / spacing;
-    let kind = ReferenceKind::Shelf(ShelfProblem::Barron);
+    let kind = ReferenceKind::Textbook(TextbookProblem::Barron);
     Some(compared(kind, &column, [time, zeta], [pressure.value(), (ONE - mean).value()]))
 }
 
@@ -69,9 +69,9 @@ fn bessel(z: Complex) -> [Complex; 4] {
 
 pub fn free_strain(numbers: &mut Numbers, mut column: ColumnParameters) -> Option<Compared> {
     let zeta = numbers.between(0.0, 1.0);
-    column.shelf.drain_radius = column.height * numbers.decades(-1.0, 0.3);
+    column.textbook.drain_radius = column.height * numbers.decades(-1.0, 0.3);
     // Late enough for the series of K₀.
-    let (drain, height) = (d(column.shelf.drain_radius), d(column.height));
+    let (drain, height) = (d(column.textbook.drain_radius), d(column.height));
     let outer = drain + height;
     let time = numbers.between(0.3, 1.5) * (outer * outer / (height * height)).value();
     let inner = drain / outer;
@@ -88,7 +88,7 @@ pub fn free_strain(numbers: &mut Numbers, mut column: ColumnParameters) -> Optio
         let left = -(flux * c(d(2.0) * inner / (ONE - inner * inner))) / (s * s);
         [pressure, c(ONE) / s - left]
     });
-    let kind = ReferenceKind::Shelf(ShelfProblem::BarronFreeStrain);
+    let kind = ReferenceKind::Textbook(TextbookProblem::BarronFreeStrain);
     Some(compared(kind, &column, [time, zeta], [pressure, 1.0 - mean]))
 }
 
@@ -103,7 +103,7 @@ pub fn injection(numbers: &mut Numbers, column: ColumnParameters) -> Option<Comp
     let [near, far] = [distance, ONE].map(|at| at / (d(2.0) * root));
     let pushed = far.erfc() * d(0.5) + far.erf() / (d(4.0) * far * far)
         - (-(far * far)).exp() / (d(2.0) * PI.sqrt() * far);
-    let kind = ReferenceKind::Shelf(ShelfProblem::Injection);
+    let kind = ReferenceKind::Textbook(TextbookProblem::Injection);
     let (reference, bound) = solution(kind, &column, time);
     let computed = reference.fields(time, zeta).expect("inside").pressure / column.load * distance.value();
     let degree = reference.degree_of_consolidation(time).expect("a time");

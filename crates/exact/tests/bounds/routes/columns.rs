@@ -3,7 +3,7 @@
 use crate::double::{Complex, Double, ONE, PI, ZERO, c, d, inverse};
 use crate::routes::{Biot, mobility, seconds};
 use crate::{Compared, Numbers, compared, solution};
-use oedometer_exact::{ColumnParameters, ReferenceKind, ShelfProblem};
+use oedometer_exact::{ColumnParameters, ReferenceKind, TextbookProblem};
 use oedometer_soil::layers::{SoilLayer, SoilLayers};
 
 /// `W(ζ, T)` and `U(T)`.
@@ -28,10 +28,11 @@ pub fn with_grains(numbers: &mut Numbers, mut column: ColumnParameters) -> Colum
     let alpha = numbers.between(column.soil.porosity, 1.0);
     let choice = numbers.between(0.0, 3.0);
     if choice < 2.0 {
-        column.shelf.biot_coefficient = Some(alpha);
+        column.textbook.biot_coefficient = Some(alpha);
     }
     if choice > 1.0 {
-        column.shelf.grain_bulk_modulus = Some(soil.bulk.value() / (1.0 - alpha) * numbers.between(1.0, 3.0));
+        column.textbook.grain_bulk_modulus =
+            Some(soil.bulk.value() / (1.0 - alpha) * numbers.between(1.0, 3.0));
     }
     column
 }
@@ -39,7 +40,7 @@ pub fn with_grains(numbers: &mut Numbers, mut column: ColumnParameters) -> Colum
 /// Terzaghi's column of any water and grains.
 pub fn terzaghi(kind: ReferenceKind, numbers: &mut Numbers, column: &ColumnParameters) -> Option<Compared> {
     let [time, zeta] = place(numbers);
-    let column = if kind == ReferenceKind::Shelf(ShelfProblem::BiotColumn) {
+    let column = if kind == ReferenceKind::Textbook(TextbookProblem::BiotColumn) {
         with_grains(numbers, *column)
     } else {
         *column
@@ -83,11 +84,11 @@ pub fn xie_leo(kind: ReferenceKind, numbers: &mut Numbers, mut column: ColumnPar
 pub fn davis_raymond(numbers: &mut Numbers, mut column: ColumnParameters) -> Option<Compared> {
     let [time, zeta] = place(numbers);
     let initial = column.load * numbers.decades(-1.5, 1.5);
-    column.shelf.initial_stress = Some(initial);
+    column.textbook.initial_stress = Some(initial);
     let [isochrone, degree] = diffused(zeta, d(time));
     let (start, end) = (d(initial), d(initial) + d(column.load));
     let pressure = (end - end * (isochrone * (start / end).ln()).exp()) / d(column.load);
-    let kind = ReferenceKind::Shelf(ShelfProblem::DavisRaymond);
+    let kind = ReferenceKind::Textbook(TextbookProblem::DavisRaymond);
     Some(compared(kind, &column, [time, zeta], [pressure.value(), degree.value()]))
 }
 
@@ -96,8 +97,8 @@ pub fn seabed(numbers: &mut Numbers, column: ColumnParameters) -> Option<Compare
     let [time, zeta] = [numbers.decades(-3.0, 0.5), numbers.between(0.0, 1.0)];
     let soil = Biot::new(&column);
     let period = seconds(&column, 1.0) * d(numbers.decades(-2.0, 1.0));
-    column.shelf.wave_period = period.value();
-    let turns = seconds(&column, 1.0) / d(column.shelf.wave_period);
+    column.textbook.wave_period = period.value();
+    let turns = seconds(&column, 1.0) / d(column.textbook.wave_period);
     let root = Complex { re: ZERO, im: d(2.0) * PI * turns / soil.diffusivity_ratio() }.sqrt();
     let [sine, cosine] = (d(2.0) * PI * turns * d(time)).sincos();
     let turned = Complex { re: cosine, im: sine };
@@ -105,7 +106,7 @@ pub fn seabed(numbers: &mut Numbers, column: ColumnParameters) -> Option<Compare
     let pressure = (c(at_once) + c(ONE - at_once) * root.cosh_ratio(ONE - d(zeta))) * turned;
     let drained = c(soil.alpha * (ONE - at_once)) * root.tanh() / root;
     let settled = (c(ONE - soil.alpha * at_once) - drained) * turned;
-    let kind = ReferenceKind::Shelf(ShelfProblem::Seabed);
+    let kind = ReferenceKind::Textbook(TextbookProblem::Seabed);
     Some(compared(kind, &column, [time, zeta], [pressure.re.value(), settled.re.value()]))
 }
 

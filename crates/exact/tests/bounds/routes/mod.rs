@@ -6,7 +6,7 @@ pub mod layer;
 pub mod waves;
 
 use crate::double::{Double, ONE, d};
-use oedometer_exact::{ColumnParameters, ShelfParameters};
+use oedometer_exact::{ColumnParameters, TextbookParameters};
 
 /// A soil of Biot's equations.
 #[derive(Clone, Copy)]
@@ -29,7 +29,8 @@ impl Biot {
         let two = d(2.0);
         let modulus = young * (ONE - nu) / ((ONE + nu) * (ONE - two * nu));
         let (shear, bulk) = (young / (two * (ONE + nu)), young / (d(3.0) * (ONE - two * nu)));
-        let (alpha, compliance) = match (column.shelf.biot_coefficient, column.shelf.grain_bulk_modulus) {
+        let (alpha, compliance) = match (column.textbook.biot_coefficient, column.textbook.grain_bulk_modulus)
+        {
             (None, None) => (ONE, d(0.0)),
             (Some(alpha), None) => (d(alpha), (ONE - d(alpha)) / bulk),
             (None, Some(grains)) => (ONE - bulk / d(grains), ONE / d(grains)),
@@ -42,7 +43,7 @@ impl Biot {
 
     /// Incompressible water and grains.
     pub fn incompressible(column: &ColumnParameters) -> Self {
-        let soil = Self::new(&ColumnParameters { shelf: ShelfParameters::default(), ..*column });
+        let soil = Self::new(&ColumnParameters { textbook: TextbookParameters::default(), ..*column });
         Self { fixed: d(0.0), alpha: ONE, storage: ONE / soil.modulus, ..soil }
     }
 

@@ -4,17 +4,17 @@ pub mod names;
 pub mod preset;
 pub mod units;
 
-use crate::diagnostic::{Diagnostic, StudyError};
 use crate::import::mapping::names::ColumnName;
 use crate::import::mapping::units::{
     DisplacementSource, HorizontalSense, Hydrostatic, LengthUnit, RowFilter, SettlementSeries, StatedPlace,
     StressKind, StressMeaning, StressSign, StressUnit, Time, TimeUnit, VerticalSense,
 };
-use crate::source::StudySource;
 use oedometer_case::quantity::{Quantity, Sample};
+use oedometer_input::diagnostic::{Diagnostic, StudyError};
+use oedometer_input::source::StudySource;
 use oedometer_scenes::Scene;
 use oedometer_scenes::scene::Body;
-use oedometer_soil::wording::words;
+use oedometer_wording::words;
 use serde::Deserialize;
 
 /// What the columns of a file mean.

@@ -1,11 +1,11 @@
 //! Built-in mappings for known programs and the default; a mapping of the user overrides them.
 
-use crate::diagnostic::StudyError;
 use crate::import::mapping::{Axes, DeclaredBy, Mapping};
 use crate::solver::{PRESETS, Preset};
-use crate::source::StudySource;
 use include_dir::{Dir, File, include_dir};
 use oedometer_formats::{Array, Frame};
+use oedometer_input::diagnostic::StudyError;
+use oedometer_input::source::StudySource;
 
 /// The mapping of a column's result without a declaration.
 pub const CONVENTION: &str = include_str!("../presets/column.toml");

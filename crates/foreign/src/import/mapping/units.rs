@@ -1,7 +1,7 @@
 //! Parts of a mapping in the words of its file: units, signs and origins of columns, which rows count, where times come
 //! from, and what is derived from columns.
 
-use oedometer_soil::wording::words;
+use oedometer_wording::{DAY, HOUR, MINUTE, MONTH, YEAR, words};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -101,11 +101,11 @@ impl TimeUnit {
     pub fn seconds(self, time: f64, seconds_per_time_factor: f64) -> f64 {
         time * match self {
             Self::S => 1.0,
-            Self::Min => 60.0,
-            Self::H => 3600.0,
-            Self::D => 86_400.0,
-            Self::Month => 365.25 / 12.0 * 86_400.0,
-            Self::A => 365.25 * 86_400.0,
+            Self::Min => MINUTE,
+            Self::H => HOUR,
+            Self::D => DAY,
+            Self::Month => MONTH,
+            Self::A => YEAR,
             Self::TimeFactor => seconds_per_time_factor,
         }
     }
@@ -250,9 +250,9 @@ mod tests {
     use crate::import::mapping::{Column, Mapping};
     use crate::import::raw_row::{RawRow, SolvedBody};
     use crate::solver::Preset;
-    use crate::source::StudySource;
     use clap::ValueEnum;
     use oedometer_formats::ImportError;
+    use oedometer_input::source::StudySource;
     use std::path::Path;
 
     /// A body 5 m high and 8 m long in which `T_v` = 1 is 250 s.

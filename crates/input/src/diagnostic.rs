@@ -1,5 +1,6 @@
 //! Messages on mistakes in a study file: what is wrong, where, and what would be right.
 
+use crate::nearest::nearest;
 use crate::synonyms::usual_word;
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
@@ -12,8 +13,6 @@ const RENDER_WIDTH: usize = 110;
 const LONGEST_MESSAGE: usize = 2000;
 /// Names that are listed where none is near.
 const MOST_LISTED: usize = 12;
-/// Edit distance up to which a name is taken for a misspelt one.
-const CLOSE: f64 = 0.6;
 
 /// One thing that is wrong.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -96,20 +95,6 @@ fn inside(source: &str, span: &Range<usize>) -> Range<usize> {
     let start = floor(span.start);
     let line = source[start..].find('\n').map_or(source.len(), |end| start + end);
     start..floor(span.end).clamp(start, line)
-}
-
-/// The candidate nearest to a misspelt word, if one is near at all.
-pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    candidates
-        .into_iter()
-        .map(|candidate| {
-            let alike =
-                strsim::normalized_damerau_levenshtein(&word.to_lowercase(), &candidate.to_lowercase());
-            (alike, candidate)
-        })
-        .filter(|(alike, _)| *alike >= CLOSE)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, candidate)| candidate)
 }
 
 /// The candidate that a word was probably meant to be.

@@ -11,7 +11,7 @@
 //! | `davis-raymond` | nonlinear column with a constant coefficient of consolidation | Davis & Raymond (1965) |
 //!
 //! Each has the height `H`, the load `q`, the material and the time factor `T_v = c_v t/H²` of a column, and what
-//! [`ShelfParameters`] adds. Where the places are is said with each problem: `ζ = 0` is its drained or loaded end,
+//! [`TextbookParameters`] adds. Where the places are is said with each problem: `ζ = 0` is its drained or loaded end,
 //! and `y = (1 − ζ)H` counts from the other one. docs/exact.md has the equations.
 
 mod barron;
@@ -31,13 +31,13 @@ use biot::BiotColumn;
 use cryer::Cryer;
 use davis_raymond::DavisRaymond;
 use injection::Injection;
-use oedometer_soil::wording::words;
+use oedometer_wording::words;
 use seabed::Seabed;
 use std::sync::Arc;
 
-/// A problem of the shelf.
+/// A textbook problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum ShelfProblem {
+pub enum TextbookProblem {
     /// Terzaghi's column with a Biot coefficient and grains of finite stiffness.
     BiotColumn,
     /// Cryer's sphere.
@@ -55,12 +55,12 @@ pub enum ShelfProblem {
 }
 
 words!(
-    ShelfProblem:
+    TextbookProblem:
     BiotColumn "biot-column", Cryer "cryer", Barron "barron", BarronFreeStrain "barron-free-strain",
     Seabed "seabed", Injection "injection", DavisRaymond "davis-raymond",
 );
 
-impl core::fmt::Display for ShelfProblem {
+impl core::fmt::Display for TextbookProblem {
     fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         formatter.pad(self.name())
     }
@@ -68,20 +68,20 @@ impl core::fmt::Display for ShelfProblem {
 
 /// The rows of the problems, in their order.
 static ROWS: [Row; 7] = [
-    row(ShelfProblem::BiotColumn, biot::INPUTS, true),
-    row(ShelfProblem::Cryer, cryer::INPUTS, true),
-    row(ShelfProblem::Barron, barron::INPUTS, true),
-    row(ShelfProblem::BarronFreeStrain, barron::INPUTS, true),
-    row(ShelfProblem::Seabed, seabed::INPUTS, false),
-    row(ShelfProblem::Injection, injection::INPUTS, false),
-    row(ShelfProblem::DavisRaymond, davis_raymond::INPUTS, false),
+    row(TextbookProblem::BiotColumn, biot::INPUTS, true),
+    row(TextbookProblem::Cryer, cryer::INPUTS, true),
+    row(TextbookProblem::Barron, barron::INPUTS, true),
+    row(TextbookProblem::BarronFreeStrain, barron::INPUTS, true),
+    row(TextbookProblem::Seabed, seabed::INPUTS, false),
+    row(TextbookProblem::Injection, injection::INPUTS, false),
+    row(TextbookProblem::DavisRaymond, davis_raymond::INPUTS, false),
 ];
 
-const fn row(problem: ShelfProblem, inputs: &'static [&'static [&'static str]], adds_up: bool) -> Row {
+const fn row(problem: TextbookProblem, inputs: &'static [&'static [&'static str]], adds_up: bool) -> Row {
     Row { name: problem.name(), inputs, adds_up, ..Row::COLUMN }
 }
 
-impl ShelfProblem {
+impl TextbookProblem {
     /// What is known of it whatever its parameters.
     pub(crate) const fn row(self) -> &'static Row {
         &ROWS[self as usize]

@@ -6,8 +6,8 @@ use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positiv
 use crate::inputs::COLUMN_KEYS;
 use crate::numerics::bisected;
 use crate::parameters::ColumnParameters;
-use crate::shelf::terms::terms_for;
 use crate::solution::{Accuracy, FieldValues, Solution};
+use crate::textbook::terms::terms_for;
 use oedometer_soil::elementary::{self, exp, hypot, j0, j1, ln, y0, y1};
 
 /// Study keys that the solution reads.
@@ -30,7 +30,7 @@ struct Cylinder {
 
 impl Cylinder {
     fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
-        let drain = positive("radius of the drain", parameters.shelf.drain_radius)?;
+        let drain = positive("radius of the drain", parameters.textbook.drain_radius)?;
         let outer = drain + parameters.height;
         let (inner, width) = (drain / outer, parameters.height / outer);
         positive("radius of the drain over the outer radius", inner)?;

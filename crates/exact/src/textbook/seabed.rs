@@ -37,7 +37,7 @@ pub struct Seabed {
 impl Seabed {
     pub fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
         let soil = PorousSoil::new(parameters)?;
-        let periods = parameters.time(1.0) / positive("period of the wave", parameters.shelf.wave_period)?;
+        let periods = parameters.time(1.0) / positive("period of the wave", parameters.textbook.wave_period)?;
         let squared = positive("square of the wave number", 2.0 * PI * periods / soil.diffusivity_ratio())?;
         Ok(Self {
             load: parameters.load,

@@ -8,7 +8,7 @@ use crate::study::check::Study;
 /// Drops from a record what no verdict of its study needs, because whole records of a hundred thousand cases do not
 /// fit into memory: fields and history, and where no expectation selects the record its errors and balances too.
 /// Records with warnings stay whole, and those that cannot be made again.
-pub fn thin(study: &Study, record: &mut Record) {
+pub fn drop_unneeded(study: &Study, record: &mut Record) {
     // What is proposed to a study without expectations comes from its errors and fields.
     if proposals::are_wanted(study) {
         return;
@@ -61,7 +61,7 @@ mod tests {
         };
         let whole = judged(&records);
         for record in &mut records {
-            thin(&study, record);
+            drop_unneeded(&study, record);
         }
         assert_eq!(judged(&records), whole);
         let held = records.iter().filter(|record| !record.errors.is_empty()).count();
@@ -75,7 +75,7 @@ mod tests {
         let mut record = records_of(THREE_METHODS).remove(0);
         record.balance[0].solid_mass_drift = 1.0;
         let mut thinned = record.clone();
-        thin(&study, &mut thinned);
+        drop_unneeded(&study, &mut thinned);
         assert_eq!(thinned, record);
     }
 }

@@ -7,8 +7,8 @@ use crate::inputs::{BIOT_KEYS, COLUMN_KEYS};
 use crate::numerics::bisected;
 use crate::parameters::ColumnParameters;
 use crate::porous_soil::PorousSoil;
-use crate::shelf::terms::terms_for;
 use crate::solution::{Accuracy, FieldValues, Solution};
+use crate::textbook::terms::terms_for;
 use oedometer_soil::elementary;
 
 /// Study keys that the solution reads.

@@ -1,6 +1,6 @@
 //! Keys and words of other programs and textbooks, and what they are called here.
 
-use crate::diagnostic::nearest;
+use crate::nearest::nearest;
 use oedometer_case::keys::{KEYS, Key};
 
 /// Keys of earlier versions, and what they are called now.

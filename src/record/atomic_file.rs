@@ -52,7 +52,7 @@ static PLACE: LazyLock<String> = LazyLock::new(|| {
 ///
 /// # Errors
 /// When the file system refuses; nothing is left under the name then.
-pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), StoreError> {
+pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), StoreError> {
     write_streamed(path, |file| file.write_all(content).and_then(|()| file.sync_all()))
 }
 
@@ -60,7 +60,7 @@ pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), StoreError> {
 /// puts it on the disk in its own time.
 ///
 /// # Errors
-/// As [`write_whole`].
+/// As [`write_atomically`].
 pub fn write_rebuildable(path: &Path, content: &[u8]) -> Result<(), StoreError> {
     write_streamed(path, |file| file.write_all(content))
 }
@@ -168,7 +168,7 @@ mod tests {
             entries.map(|name| name.to_string_lossy().into_owned()).collect::<Vec<_>>()
         };
         let path = at.join("made/for/a.json");
-        write_whole(&path, b"first").expect("written");
+        write_atomically(&path, b"first").expect("written");
         write_rebuildable(&path, b"second").expect("written");
         let half = write_streamed(&path, |file| {
             file.write_all(b"thi")?;
@@ -180,7 +180,7 @@ mod tests {
         assert_eq!(names(&at.join("made/for")), ["a.json"]);
         // A file in the place of its folder.
         let below = path.join("b.json");
-        let told = write_whole(&below, b"x").expect_err("refused").to_string();
+        let told = write_atomically(&below, b"x").expect_err("refused").to_string();
         assert!(told.starts_with(&format!("cannot create the folder {}: ", path.display())), "{told}");
         assert_eq!(folder_of(Path::new("a.json")), Path::new("."));
         assert_eq!(folder_of(Path::new("b/a.json")), Path::new("b"));

@@ -1,6 +1,7 @@
 //! Numbers with a unit, like `"50 kPa"`: read as numbers in SI units where a key has a unit.
 
-use crate::diagnostic::nearest;
+use crate::nearest::nearest;
+use oedometer_wording::{DAY, HOUR, MINUTE, MONTH, WEEK, YEAR};
 use std::f64::consts::PI;
 
 /// A unit that a number may stand with: its names, the prefixes that it takes, the exponents of kilogram, metre and
@@ -16,12 +17,12 @@ const SYMBOLS: [Symbol; 14] = [
     (&["g"], "kM", [1, 0, 0], -3, 1.0),
     (&["t"], "", [1, 0, 0], 3, 1.0),
     (&["s", "second", "seconds", "sec"], "mµun", [0, 0, 1], 0, 1.0),
-    (&["min", "minute", "minutes"], "", [0, 0, 1], 0, 60.0),
-    (&["h", "hour", "hours", "hr"], "", [0, 0, 1], 0, 3600.0),
-    (&["d", "day", "days"], "", [0, 0, 1], 0, 86_400.0),
-    (&["week", "weeks"], "", [0, 0, 1], 0, 7.0 * 86_400.0),
-    (&["month", "months"], "", [0, 0, 1], 0, 365.25 / 12.0 * 86_400.0),
-    (&["a", "year", "years", "yr"], "", [0, 0, 1], 0, 365.25 * 86_400.0),
+    (&["min", "minute", "minutes"], "", [0, 0, 1], 0, MINUTE),
+    (&["h", "hour", "hours", "hr"], "", [0, 0, 1], 0, HOUR),
+    (&["d", "day", "days"], "", [0, 0, 1], 0, DAY),
+    (&["week", "weeks"], "", [0, 0, 1], 0, WEEK),
+    (&["month", "months"], "", [0, 0, 1], 0, MONTH),
+    (&["a", "year", "years", "yr"], "", [0, 0, 1], 0, YEAR),
     (&["rad", "deg"], "", [0, 0, 0], 0, 1.0),
 ];
 

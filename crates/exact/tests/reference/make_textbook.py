@@ -1,5 +1,5 @@
-"""Values of the shelf's problems to 40 digits, by other ways than crates/exact/src/shelf: transforms inverted on Talbot's
-contour, quadratures, and integration of the differential equations. Prints shelf.csv.
+"""Values of the textbook problems to 40 digits, by other ways than crates/exact/src/textbook: transforms inverted on Talbot's
+contour, quadratures, and integration of the differential equations. Prints textbook.csv.
 
 Columns: problem, case, time factor T_v, depth zeta, then over the load p and sigma', over m_v q H the displacement u and
 the settlement s. The soil of every case is the default one of ColumnParameters but for what CASES changes."""

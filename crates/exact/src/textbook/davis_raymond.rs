@@ -34,7 +34,7 @@ impl DavisRaymond {
     pub fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
         let load = parameters.load;
         let start =
-            positive("effective stress of the start", parameters.shelf.initial_stress.unwrap_or(load))?;
+            positive("effective stress of the start", parameters.textbook.initial_stress.unwrap_or(load))?;
         let logarithm = normal("logarithm of the stress ratio", elementary::ln_1p(load / start))?;
         let final_settlement = parameters.height * start / parameters.soil.oedometric_modulus() * logarithm;
         Ok(Self { end: start + load, load, logarithm, final_settlement })

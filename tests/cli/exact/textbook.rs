@@ -1,7 +1,7 @@
-//! Problems of the shelf, printed and scored by the program, and what it refuses.
+//! Problems of textbooks, printed and scored by the program, and what it refuses.
 
 use crate::program::{Told, call};
-use oedometer_exact::ShelfProblem;
+use oedometer_exact::TextbookProblem;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -13,7 +13,7 @@ fn run(words: &str) -> Told {
 fn what_exact_prints_scores_nothing_and_another_soil_fails() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("result.csv");
-    for problem in ShelfProblem::NAMES {
+    for problem in TextbookProblem::NAMES {
         let told = run(&format!("exact {problem} --time-factor 0.05,0.5 --zeta 0.1,0.3,0.5,0.7,0.9"));
         assert_eq!(told.code, 0, "{problem}: {}", told.err);
         assert!(told.err.contains("tail below"), "{problem}: {}", told.err);

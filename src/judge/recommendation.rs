@@ -4,8 +4,8 @@ use crate::case::Case;
 use crate::case::grouping::grouped;
 use crate::judge::case_verdicts::recommendable;
 use crate::record::Record;
-use crate::record::reached::reached;
 use crate::study::expectation::CaseExpectation;
+use oedometer_convergence::reached;
 use oedometer_problem::time_step::TimeStep;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
