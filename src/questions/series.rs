@@ -338,6 +338,7 @@ impl Series<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::questions::series_figure::figures;
     use crate::campaign::runner::{failed_at, records_of, study_of};
     use crate::case::planned::Tier;
     use LevelError::{Failed, Measured, NotRun};
@@ -416,6 +417,9 @@ mod tests {
             assert_eq!(heads, names);
             let has_order = table.columns.iter().any(|column| column.header == "order");
             assert_eq!(has_order, [Axis::Cells, Axis::TimeStep].contains(&axis), "{axis:?}");
+            let titles = figures(&found).into_iter().map(|figure| figure.chart.title);
+            let say_order = titles.filter(|title| title.contains("order")).count();
+            assert!(has_order || say_order == 0, "{axis:?}");
         }
     }
 }

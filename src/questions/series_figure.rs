@@ -9,6 +9,7 @@ use crate::render::chart::{self, Chart, ChartAxis, Rule, Size, SlopeTriangle};
 use crate::render::number;
 use crate::render::page::Figure;
 use crate::study::expectation::{Axis, NEXT_FINER};
+use oedometer_convergence::Class;
 use oedometer_wording::count_of;
 
 /// Slopes of the triangles: of first and of second order.
@@ -45,7 +46,7 @@ pub fn figure(found: &SeriesTable<'_>, measured: Measured) -> Option<Figure> {
     let names: Vec<String> = lines.iter().map(|one| name_of(one, sample)).collect();
     let ticks = words::ticks(lines.iter().flat_map(|one| points_of(one)).map(|point| point.0));
     let mut chart = Chart::new(
-        title_of(found.axis, &words::measured(quantity, sample), &lines, &names),
+        title_of(found, &words::measured(quantity, sample), &lines, &names),
         ChartAxis::log10(words::axis(found.axis)).with_ticks(ticks),
         ChartAxis::log10(words::error_axis(quantity)),
     );
@@ -77,21 +78,27 @@ pub fn figure(found: &SeriesTable<'_>, measured: Measured) -> Option<Figure> {
     Some(Figure::new(crate::render::page::slug(&name), chart, caption))
 }
 
-/// What the lines show: over the mesh which ends with the least error, over the step which is of the highest order.
-fn title_of(axis: Axis, measured: &str, lines: &[&Series<'_>], names: &[String]) -> String {
-    let named = lines.iter().zip(names).filter_map(|(one, name)| Some((one, name, one.ends()?[1].1.abs())));
-    let best = if axis == Axis::TimeStep {
-        let order = |one: &Series<'_>| one.order().unwrap_or(f64::NEG_INFINITY);
-        named.reduce(|a, b| if order(b.0) > order(a.0) { b } else { a })
-    } else {
-        named.reduce(|a, b| if b.2 < a.2 { b } else { a })
+/// What the lines show: over the mesh which ends with the least error, over the step which is of the highest order. An order
+/// that has not settled, or of what does not converge, is no finding.
+fn title_of(found: &SeriesTable<'_>, measured: &str, lines: &[&Series<'_>], names: &[String]) -> String {
+    let order = |one: &Series<'_>| {
+        one.order().filter(|_| found.has_orders() && one.class().is_none_or(Class::is_settled))
     };
-    let Some((best, name, error)) = best else { return format!("Error of the {measured}") };
-    let order = best.order().map(|order| format!("order {}", number::order(order)));
-    let off = (axis != Axis::TimeStep).then(|| format!("{} at the end", number::percent(error)));
-    let found = [order, off].into_iter().flatten().collect::<Vec<_>>().join(", ");
+    let of_step = found.axis == Axis::TimeStep;
+    let named = lines.iter().zip(names).filter_map(|(one, name)| {
+        let error = one.ends()?[1].1.abs();
+        let order = order(one);
+        let rank = if of_step { -order? } else { error };
+        Some((rank, name, order, error))
+    });
+    let Some((_, name, order, error)) = named.reduce(|a, b| if b.0 < a.0 { b } else { a }) else {
+        return format!("Error of the {measured}");
+    };
+    let order = order.map(|order| format!("order {}", number::order(order)));
+    let off = (!of_step).then(|| format!("{} at the end", number::percent(error)));
+    let end = [order, off].into_iter().flatten().collect::<Vec<_>>().join(", ");
     let who = if lines.len() > 1 { format!("{name} is best, ") } else { String::new() };
-    format!("{}: {who}{found}", words::capitalised(measured))
+    format!("{}: {who}{end}", words::capitalised(measured))
 }
 
 /// Sizes of the levels with their finite errors: over the step with the differences between neighbouring steps.

@@ -179,7 +179,7 @@ fn profile_figure(findings: &RaceFindings, group: Group, read_out: ReadOut) -> F
     let mut chart = Chart::new(
         title,
         ChartAxis::log10("work to 1 %, over that of the cheapest method").between(1.0, LARGEST_TAU),
-        ChartAxis::linear("share of problems").between(0.0, 1.0),
+        ChartAxis::linear("share of problems, each family weighs the same").between(0.0, 1.0),
     );
     chart.naming = Naming::Ends;
     chart.size = Size { width: 620.0, plot_height: 440.0 };
