@@ -338,9 +338,9 @@ impl Series<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::questions::series_figure::figures;
     use crate::campaign::runner::{failed_at, records_of, study_of};
     use crate::case::planned::Tier;
+    use crate::questions::series_figure::figures;
     use LevelError::{Failed, Measured, NotRun};
 
     fn text_of(sweeps: &[String]) -> String {
