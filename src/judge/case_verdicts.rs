@@ -153,13 +153,7 @@ fn status_found(wanted: &str, record: &Record) -> Check {
     let complaint =
         if wanted == UNSOUND && record.status == Status::Ok { complaints(record).pop() } else { None };
     if let Some(complaint) = complaint {
-        return Check {
-            name: "status".to_owned(),
-            pass: true,
-            measured: None,
-            reason: format!("{UNSOUND}: {complaint}"),
-            follows: false,
-        };
+        return Check::told("status", true, format!("{UNSOUND}: {complaint}"));
     }
     let found = record.status.name();
     let how = record
@@ -168,13 +162,7 @@ fn status_found(wanted: &str, record: &Record) -> Check {
         .map_or_else(String::new, |failure| format!("{}: {}", failure.place(), failure.reason));
     let pass = found == wanted;
     let instead = if pass { String::new() } else { format!(" instead of {wanted}") };
-    Check {
-        name: "status".to_owned(),
-        pass,
-        measured: None,
-        reason: format!("{found}{instead}{how}"),
-        follows: false,
-    }
+    Check::told("status", pass, format!("{found}{instead}{how}"))
 }
 
 fn critical_step_found(within: f64, record: &Record) -> Check {

@@ -27,6 +27,7 @@ use oedometer_exact::ReferenceKind;
 use oedometer_problem::snapshot::Snapshot;
 use oedometer_scenes::column::column_parameters;
 use oedometer_wording::count_of;
+use serde::ser::{Serialize, SerializeStruct, Serializer};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -110,6 +111,29 @@ pub enum CheckEnd {
     Golden,
     /// There are no golden values, and there cannot be any before all cases are run.
     HeldBack,
+}
+
+/// The keys of `check --format json`.
+impl Serialize for StudyCheck {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut out = serializer.serialize_struct("StudyCheck", 15)?;
+        out.serialize_field("study", &self.study)?;
+        out.serialize_field("end", &self.end())?;
+        out.serialize_field("judgements", &self.judgements)?;
+        out.serialize_field("failed_cases", &self.failed_cases)?;
+        out.serialize_field("unsound_records", &self.unsound)?;
+        out.serialize_field("golden_values_that_agree", &self.agreeing)?;
+        out.serialize_field("golden_problem", &self.golden.as_ref().err().map(ToString::to_string))?;
+        out.serialize_field("proposed_expectations", &self.proposals)?;
+        out.serialize_field("cases_of_other_inputs", &self.other_inputs)?;
+        out.serialize_field("groups", &self.groups)?;
+        out.serialize_field("differences", self.differences())?;
+        out.serialize_field("accuracy_and_cost", &self.changes)?;
+        out.serialize_field("taken_over", &self.taken_over)?;
+        out.serialize_field("warnings", &self.warnings)?;
+        out.serialize_field("diagnoses", &self.diagnoses)?;
+        out.end()
+    }
 }
 
 impl StudyCheck {

@@ -139,7 +139,12 @@ fn conclude(
 impl Check {
     /// A check that fails because there is nothing to judge.
     pub(crate) fn failed(name: &str, reason: impl Into<String>) -> Self {
-        Self { name: name.to_owned(), pass: false, measured: None, reason: reason.into(), follows: false }
+        Self::told(name, false, reason)
+    }
+
+    /// A check of something that is no number.
+    pub(crate) fn told(name: &str, pass: bool, reason: impl Into<String>) -> Self {
+        Self { name: name.to_owned(), pass, measured: None, reason: reason.into(), follows: false }
     }
 
     /// A number that was compared with bounds: `told`, one of the words for pass and failure, `bounds`.
@@ -154,7 +159,7 @@ impl Check {
         let word = words[usize::from(!pass)];
         let measured = Some(measured).filter(|value| value.is_finite());
         let reason = format!("{told} {word} {bounds}");
-        Self { name: name.to_owned(), pass, measured, reason, follows: false }
+        Self { measured, ..Self::told(name, pass, reason) }
     }
 }
 
@@ -175,10 +180,7 @@ fn rows(series: &ErrorSeries, class: Option<Class>) -> Check {
     match obstacle {
         _ if levels.is_empty() => Check::failed("rows", "there are no rows"),
         Some(obstacle) => Check::failed("rows", obstacle.to_string()),
-        None => {
-            let reason = format!("{} levels", levels.len());
-            Check { name: "rows".to_owned(), pass: true, measured: None, reason, follows: false }
-        }
+        None => Check::told("rows", true, format!("{} levels", levels.len())),
     }
 }
 
@@ -200,7 +202,7 @@ fn class_found(wanted: Class, found: &Classification, series: &ErrorSeries) -> C
         };
         format!("{}, expected {wanted}: {}{advice}{errors}", found.class, found.reason)
     };
-    Check { name: "class".to_owned(), pass, measured: None, reason, follows: false }
+    Check::told("class", pass, reason)
 }
 
 fn order_found(band: OrderBand, class: Option<Class>, found: &Classification) -> Check {

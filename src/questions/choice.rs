@@ -277,7 +277,7 @@ fn group_answers(race: &RaceFindings) -> Vec<GroupAnswer> {
 fn leader(race: &RaceFindings, read_out: ReadOut) -> Option<Leader> {
     let terms = Terms::usual(read_out);
     let of_method = |method: &str| {
-        let ratios = race.situations.iter().filter_map(|one| ratio(one, entry_of(one, method)?, &terms));
+        let ratios = race.situations.iter().filter_map(|one| one.ratio(entry_of(one, method)?, &terms));
         let ratios: Vec<f64> = ratios.collect();
         Leader {
             read_out,
@@ -353,23 +353,6 @@ pub fn reason_words(reason: Reason) -> String {
     }
 }
 
-/// The methods that may run in a problem and the least cost of all that reach the tolerance.
-pub fn cheapest<'a>(
-    situation: &'a Situation,
-    terms: &Terms,
-    takes: impl Fn(&str) -> bool,
-) -> Option<(&'a Entry, f64)> {
-    let costs = situation.entries.iter().filter(|entry| takes(&entry.contender));
-    let costs = costs.filter_map(|entry| Some((entry, situation.arrival(entry, terms)?.cost)));
-    costs.min_by(|a, b| a.1.total_cmp(&b.1))
-}
-
-/// The cost of a method over that of the cheapest of all, where it reaches the tolerance.
-fn ratio(situation: &Situation, entry: &Entry, terms: &Terms) -> Option<f64> {
-    let (_, least) = cheapest(situation, terms, |_| true)?;
-    Some(situation.arrival(entry, terms)?.cost / least)
-}
-
 /// A method in a problem; where nothing moves a mesh that follows is the same mesh.
 fn entry_of<'a>(situation: &'a Situation, method: &str) -> Option<&'a Entry> {
     let at_rest = || situation.entry(method.trim_start_matches("TL-")).filter(|_| !situation.moves);
@@ -386,8 +369,7 @@ fn plotted(race: &RaceFindings, read_out: ReadOut) -> Vec<(String, &'static str)
 
 /// Who is the cheapest of all in most problems, and in how many.
 fn cheapest_of_most(race: &RaceFindings, terms: &Terms) -> String {
-    let first =
-        race.situations.iter().filter_map(|one| Some(cheapest(one, terms, |_| true)?.0.contender.as_str()));
+    let first = race.situations.iter().filter_map(|one| Some(one.cheapest(terms)?.0.contender.as_str()));
     let mut methods = grouped(first, |method| *method);
     methods.sort_by_key(|(_, problems)| Reverse(problems.len()));
     methods.first().map_or("No method reaches 1 %".to_owned(), |(method, problems)| {
@@ -420,7 +402,7 @@ pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
     chart.size = Size { width: 950.0, ..Size::default() };
     for (name, slot) in names.iter().zip(slots(&names)) {
         let points = race.situations.iter().enumerate().filter_map(|(place, situation)| {
-            Some((ratio(situation, entry_of(situation, name)?, &terms)?, place as f64))
+            Some((situation.ratio(entry_of(situation, name)?, &terms)?, place as f64))
         });
         chart.series.push(Series::new(*name, points.collect()).style(Style::Markers).slot(slot));
     }
@@ -459,7 +441,7 @@ pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
 
 /// The cheapest methods that have no mark.
 fn unmarked(race: &RaceFindings, marked: &[&str], terms: &Terms) -> String {
-    let best = race.situations.iter().filter_map(|one| cheapest(one, terms, |_| true));
+    let best = race.situations.iter().filter_map(|one| one.cheapest(terms));
     let best = distinct(best.map(|(entry, _)| entry.contender.as_str()));
     let named: Vec<String> =
         best.iter().filter(|one| !marked.contains(one)).map(|one| format!("`{one}`")).collect();
@@ -472,7 +454,7 @@ fn plotted_row(situation: &Situation, methods: &[&str], terms: &Terms) -> ChartR
         let reason = entry_of(situation, method).map(|entry| situation.reason(entry, terms));
         reason.unwrap_or(Some(Reason::NotRun)).map_or("", Reason::shown).to_owned()
     });
-    let best = cheapest(situation, terms, |_| true);
+    let best = situation.cheapest(terms);
     let arrival = best.and_then(|(entry, cost)| Some((entry, cost, situation.arrival(entry, terms)?)));
     let words = match arrival {
         Some((entry, cost, arrival)) => vec![

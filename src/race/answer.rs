@@ -1,9 +1,9 @@
 //! The answer of a group: the method to take, by where fields are read, and whether it holds wherever else one looks.
 
-use crate::race::finish::{Budget, OTHER_TOLERANCES, Reason, Terms};
+use crate::race::finish::{Budget, OTHER_TOLERANCES, Terms};
 use crate::race::group::{Group, cost_table};
 use crate::race::profile::Shares;
-use crate::race::situation::{Entry, Situation};
+use crate::race::situation::Situation;
 use crate::record::race_errors::ReadOut;
 use serde::{Deserialize, Serialize};
 
@@ -27,17 +27,6 @@ impl Holds {
     pub fn everywhere(self) -> bool {
         self.time && self.budget && self.tolerance && self.read_out
     }
-}
-
-/// Where the method of an answer does not reach the tolerance, and why.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Missed {
-    /// The situation.
-    pub situation: String,
-    /// Its title.
-    pub title: String,
-    /// The reason.
-    pub reason: Reason,
 }
 
 /// A method to take in a group for a read-out.
@@ -66,8 +55,6 @@ pub struct Answer {
     pub holds: Holds,
     /// Methods that these situations do not tell from it: the intervals of both shares overlap.
     pub alike: Vec<String>,
-    /// Where it does not reach the tolerance.
-    pub missed: Vec<Missed>,
 }
 
 /// The answers of a group and read-out, the best first; none where no method reaches the tolerance.
@@ -107,7 +94,6 @@ pub fn answers(situations: &[Situation], group: Group, read_out: ReadOut) -> Vec
                 .filter(|other| other.method != shares.method && other.is_like(&shares))
                 .map(|other| other.method.clone())
                 .collect(),
-            missed: missed(situations, group, &shares.method, &usual),
             method: shares.method,
         }
     };
@@ -115,23 +101,8 @@ pub fn answers(situations: &[Situation], group: Group, read_out: ReadOut) -> Vec
     of_best.cloned().map(answer).collect()
 }
 
+/// The largest work of a method over the least of any group.
 fn dearest(situations: &[Situation], group: Group, method: &str, terms: &Terms) -> f64 {
-    let cost = |situation: &Situation, entry: &Entry| Some(situation.arrival(entry, terms)?.cost);
-    let ratio = |situation: &Situation| {
-        let costs = situation.entries.iter().filter_map(|entry| cost(situation, entry));
-        Some(cost(situation, situation.entry(method)?)? / costs.reduce(f64::min)?)
-    };
-    situations.iter().filter(|one| group.has(one)).filter_map(ratio).fold(1.0, f64::max)
-}
-
-fn missed(situations: &[Situation], group: Group, method: &str, terms: &Terms) -> Vec<Missed> {
     let of_group = situations.iter().filter(|one| group.has(one));
-    let missed = of_group.filter_map(|situation| {
-        let reason = match situation.entry(method) {
-            Some(entry) => situation.reason(entry, terms)?,
-            None => Reason::NotRun,
-        };
-        Some(Missed { situation: situation.name.clone(), title: situation.title.clone(), reason })
-    });
-    missed.collect()
+    of_group.filter_map(|one| one.ratio(one.entry(method)?, terms)).fold(1.0, f64::max)
 }

@@ -120,6 +120,17 @@ impl Situation {
         is_missed.then(|| reason_of(&entry.levels, terms, entry.stiffness))
     }
 
+    /// The entry that reaches the tolerance at the least cost, with that.
+    pub fn cheapest(&self, terms: &Terms) -> Option<(&Entry, f64)> {
+        let costs = self.entries.iter().filter_map(|entry| Some((entry, self.arrival(entry, terms)?.cost)));
+        costs.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The cost of an entry over the least of all, where it reaches the tolerance.
+    pub fn ratio(&self, entry: &Entry, terms: &Terms) -> Option<f64> {
+        Some(self.arrival(entry, terms)?.cost / self.cheapest(terms)?.1)
+    }
+
     /// The entry of a method.
     pub fn entry(&self, contender: &str) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.contender == contender)

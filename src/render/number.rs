@@ -83,16 +83,7 @@ pub fn rounded_percent(share: f64) -> String {
 
 /// A size with two digits: `0.012`, `3.4`, `160`.
 pub fn two_digits(value: f64) -> String {
-    finite(value, |v| match v.abs() {
-        0.0 => "0".to_owned(),
-        a if a < 0.000_995 => format!("{v:.1e}"),
-        a if a < 0.00995 => format!("{v:.4}"),
-        a if a < 0.0995 => format!("{v:.3}"),
-        a if a < 0.995 => format!("{v:.2}"),
-        a if a < 9.95 => format!("{v:.1}"),
-        a if a < 999.5 => format!("{v:.0}"),
-        _ => format!("{v:.0e}"),
-    })
+    significant(value, 2)
 }
 
 /// A time in the unit that suits it, three digits.

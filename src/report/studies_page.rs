@@ -5,9 +5,9 @@ use crate::case::grouping::{distinct, grouped};
 use crate::case::method_words::method_words;
 use crate::case::quantity::Norm;
 use crate::judge::study_results::StudyResults;
-use crate::record::provenance::Provenance;
 use crate::render::page::{Block, Page, Section, slug};
 use crate::render::table::{Cell, Mood, Table, columns};
+use crate::report::answers::program_of;
 use crate::report::study_page::mood_of;
 use crate::study::check::Study;
 use oedometer_scenes::scene::Question;
@@ -42,7 +42,7 @@ pub fn studies_page(all: &[StudyResults<'_>]) -> Page {
             count_of(groups.len(), "question", "questions")
         ),
         sections,
-        footer: first.map_or(String::new(), |record| footer(&record.provenance)),
+        footer: first.map_or(String::new(), |record| program_of(&record.provenance)),
         filter: Some("Filter studies by keyword".to_owned()),
         files: Some("studies".to_owned()),
         ..Page::default()
@@ -139,14 +139,6 @@ fn names_section(all: &[StudyResults<'_>]) -> Section {
     )
 }
 
-/// The program that made the records.
-fn footer(origin: &Provenance) -> String {
-    format!(
-        "oedometer {}, sources {}, {}, {}, {} profile",
-        origin.version, origin.sources, origin.compiler, origin.target, origin.profile
-    )
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -209,7 +201,7 @@ mod tests {
         assert_eq!(page.lead, "5 studies of 2 questions.");
         assert_eq!(studies_page(&results[..1]).lead, "1 study of 1 question.");
         assert!(
-            page.footer.starts_with("oedometer 0.0.1, sources "),
+            page.footer.starts_with("oedometer 0.0.1 · commit `"),
             "that of the first record: {}",
             page.footer
         );

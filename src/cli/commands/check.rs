@@ -1,7 +1,6 @@
 //! `oedometer check`: the CI tier again, judged by its expectations and by its golden values.
 
 use crate::campaign::runner::{RunReport, Tally};
-use crate::campaign::taken_over::TakenOver;
 use crate::case::planned::Tier;
 use crate::cli::exit::{Ended, Exit, sentence};
 use crate::cli::output::{
@@ -13,13 +12,11 @@ use crate::cli::place::{StudyArguments, chosen_as, golden_folder, golden_of};
 use crate::cli::running::{jobs_of, run_ci_tier};
 use crate::cli::study_files::load_sound;
 use crate::cli::trust::{self, TrustArguments};
-use crate::golden::compare::{CaseChange, Difference, DifferenceGroup};
 use crate::golden::{GoldenError, GoldenFile};
 use crate::history::accepted_inputs::changes_since;
-use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
+use crate::judge::study_check::{CheckEnd, StudyCheck};
 use crate::judge::study_results::StudyResults;
 use crate::judge::unneeded_data::drop_unneeded;
-use crate::judge::verdict::Judgement;
 use crate::questions::answers;
 use crate::questions::finding::{Finding, Place};
 use crate::record::Record;
@@ -198,26 +195,6 @@ fn worst_of(checks: &[StudyCheck]) -> Exit {
     worst.map_or(Exit::Pass, |(_, exit)| exit)
 }
 
-/// What the JSON of `check` has of a study.
-#[derive(serde::Serialize)]
-struct CheckJson<'a> {
-    study: &'a str,
-    end: CheckEnd,
-    judgements: &'a [Judgement],
-    failed_cases: &'a [CaseNote],
-    unsound_records: &'a [CaseNote],
-    golden_values_that_agree: usize,
-    golden_problem: Option<String>,
-    proposed_expectations: &'a [String],
-    cases_of_other_inputs: &'a [String],
-    groups: &'a [DifferenceGroup],
-    differences: &'a [Difference],
-    accuracy_and_cost: &'a [CaseChange],
-    taken_over: &'a [TakenOver],
-    warnings: &'a [String],
-    diagnoses: &'a [String],
-}
-
 /// The verdicts on all studies, a line each.
 fn verdicts_alone(checks: &[StudyCheck]) -> String {
     checks.iter().map(|check| check_page::verdict_on(check, terminal_width())).collect()
@@ -243,37 +220,16 @@ fn print(
         }
         TableFormat::Markdown => check_page::markdown_of(checks, file_of)?,
         TableFormat::Csv => check_page::all_judgements(checks).to_csv()?,
-        TableFormat::Json => json_of(&checks.iter().map(CheckJson::of).collect::<Vec<_>>())?,
+        TableFormat::Json => json_of(&checks)?,
     };
     print_data(&text)
-}
-
-impl<'a> CheckJson<'a> {
-    fn of(check: &'a StudyCheck) -> Self {
-        Self {
-            study: &check.study,
-            end: check.end(),
-            judgements: &check.judgements,
-            failed_cases: &check.failed_cases,
-            unsound_records: &check.unsound,
-            golden_values_that_agree: check.agreeing,
-            golden_problem: check.golden.as_ref().err().map(ToString::to_string),
-            proposed_expectations: &check.proposals,
-            cases_of_other_inputs: &check.other_inputs,
-            groups: &check.groups,
-            differences: check.differences(),
-            accuracy_and_cost: &check.changes,
-            taken_over: &check.taken_over,
-            warnings: &check.warnings,
-            diagnoses: &check.diagnoses,
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::cli::running::run_quietly;
+    use crate::judge::study_check::CaseNote;
     use crate::study::file::StudySource;
 
     const STUDY: &str = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
@@ -367,8 +323,8 @@ mod tests {
             "groups": [], "differences": [], "accuracy_and_cost": [], "taken_over": [], "warnings": ["warned"],
             "diagnoses": [],
         });
-        assert_eq!(serde_json::to_value(CheckJson::of(&check)).expect("plain data"), wanted);
-        let told = serde_json::to_value(CheckJson::of(&missing)).expect("plain data");
+        assert_eq!(serde_json::to_value(&check).expect("plain data"), wanted);
+        let told = serde_json::to_value(&missing).expect("plain data");
         let why = "there are no golden values yet (no-such-folder/t.csv): if the results look right, accept \
                    them with `oedometer accept` and a reason";
         assert_eq!((&told["golden_problem"], &told["end"]), (&why.into(), &"golden".into()));

@@ -101,7 +101,7 @@ impl Making {
 }
 
 /// Version, commit or sources, compiler and profile.
-fn program_of(origin: &Provenance) -> String {
+pub(crate) fn program_of(origin: &Provenance) -> String {
     let commit = match (origin.commit.is_empty(), origin.dirty) {
         (true, _) => String::new(),
         (false, false) => format!("commit `{}`, ", origin.commit),

@@ -4,7 +4,7 @@ use crate::campaign::refinement::MOST_WORK;
 use crate::case::contender::CONTENDERS;
 use crate::judge::study_check::StudyCheck;
 use crate::questions::choice::{
-    LARGEST_TAU, SHOWN, cheapest, dot_plot, facts, family_table, places_of, reason_words, words_of,
+    LARGEST_TAU, SHOWN, dot_plot, facts, family_table, places_of, reason_words, words_of,
 };
 use crate::questions::finding::Finding;
 use crate::questions::sentence;
@@ -291,7 +291,7 @@ fn matrix(situations: &[Situation], read_out: ReadOut) -> Table {
     heads.extend(CONTENDERS.iter().map(|one| TableColumn::number(one.name)));
     let rows = situations.iter().map(|situation| {
         let target = page_of(&situation.study);
-        let least = cheapest(situation, &terms, |_| true).map(|(_, cost)| cost);
+        let least = situation.cheapest(&terms).map(|(_, cost)| cost);
         let cell = |entry: &Entry| {
             let arrival = situation.arrival(entry, &terms);
             let cost = arrival.as_ref().map(|one| one.cost);
