@@ -8,7 +8,7 @@ use crate::foreign::case_file::CaseFile;
 use crate::import::mapping::{Axes, Mapping};
 use crate::import::origins::{Origin, Origins, PartKind};
 use crate::import::raw_row::{RawRow, SolvedBody};
-use crate::import::runs::Run;
+use crate::import::run::Run;
 use crate::import::{SampledState, states_of};
 use crate::score::Score;
 use crate::score::results::{Comparison, Results};

@@ -6,7 +6,7 @@ use crate::case::{Case, Quantity, Sample};
 use crate::import::Absent;
 use crate::import::mapping::Mapping;
 use crate::import::nodes::counted_otherwise;
-use crate::import::runs::Run;
+use crate::import::run::Run;
 use crate::import::{SampledState, not_ended};
 use crate::measure::round_off::SINGLE_PRECISION;
 use crate::record::ErrorRow;

@@ -1,9 +1,11 @@
 //! Reads the result files of a solver as states, and reports how they were read.
 
+use crate::import::given_files::files_of;
 use crate::import::mapping::{Axes, Mapping};
 use crate::import::nodes::counted_otherwise;
 use crate::import::raw_row::SolvedBody;
-use crate::import::runs::{Run, files_of, runs_of};
+use crate::import::run::Run;
+use crate::import::runs::runs_of;
 use crate::import::{SampledState, not_ended};
 use crate::solver::ExternalSolver;
 use oedometer_case::{Case, Sample};

@@ -1,22 +1,20 @@
 //! Groups the files that a user gives into runs by mesh, and reads their times and rows.
 
 use crate::import::expected::Expected;
-use crate::import::frame_rows::{FrameRows, Start, cells_over_height, said_unit, wanted_names};
-use crate::import::mapping::{Column, Mapping};
-use crate::import::nodes::weigh;
+use crate::import::frame_rows::{FrameRows, Start, cells_over_height, wanted_names};
+use crate::import::given_files::{are_tables, without_numbers};
+use crate::import::listed_states::{Listed, each_time};
+use crate::import::mapping::Mapping;
 use crate::import::origins::{Origin, Origins, PartKind};
 use crate::import::raw_row::SolvedBody;
-use crate::import::said_units::SaidUnit;
-use crate::import::samples::{SampleRow, SampledState, states_of};
-use crate::import::spelling::spellings;
-use crate::import::step_times::{declared_time, have_steps_in_folders, join, members, numbers_in};
+use crate::import::run::Run;
+use crate::import::samples::{SampleRow, states_of};
+use crate::import::step_times::{declared_time, have_steps_in_folders, join, members};
 use crate::import::table_rows::{Curve, take_rows};
-use oedometer_case::quantity::{Quantity, Sample};
+use oedometer_case::quantity::Sample;
 use oedometer_formats::{
-    Array, Association, Axis, Frame, ImportError, Kind, Step, Use, Wanted, collection_of, read_states,
-    states_by_time, steps_of,
+    Association, Frame, ImportError, Kind, Step, Wanted, collection_of, read_states, steps_of,
 };
-use std::cmp::Ordering;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -24,120 +22,6 @@ use std::path::{Path, PathBuf};
 const MOST_DOUBTS: usize = 4;
 /// Where a time comes from that the files do not say.
 const DECLARED: &str = "the mapping's [time] or --set-time-step";
-
-/// The states of one mesh.
-#[derive(Clone, Debug, Default)]
-pub struct Run {
-    /// What the user gave.
-    pub files: Vec<PathBuf>,
-    /// Number of cells over the height, if the files have cells.
-    pub cells: Option<usize>,
-    /// Its states, by time.
-    pub states: Vec<SampledState>,
-    /// What was read from where, and what was left out.
-    pub notes: Vec<String>,
-    /// What the samples are, if the files show it.
-    pub sample: Option<Sample>,
-    /// What every state must have.
-    pub expected: Expected,
-    /// Tables whose last line does not end: they may be cut inside a number.
-    pub unended: Vec<PathBuf>,
-    /// What files say in two ways: a header that does not fit its data.
-    pub doubts: Vec<String>,
-    /// What states say in two ways: other values at one place and time, times that go back.
-    pub contradictions: Vec<String>,
-    /// Width of a body whose files show it, m.
-    pub width: Option<f64>,
-    /// Whether its mesh changes with time; its cells are then those of the finest.
-    pub has_changing_mesh: bool,
-    /// Quantities that are left out on purpose.
-    pub without: Vec<Quantity>,
-}
-
-impl Run {
-    /// What the samples are: as the mapping declares, or as the files show where it leaves that open. What lies on cells is
-    /// at no node, whatever is declared.
-    pub fn sample(&self, mapping: &Mapping) -> Sample {
-        let is_wrong = mapping.sample == Sample::Nodes && self.sample == Some(Sample::Centres);
-        self.sample.filter(|_| mapping.is_sample_open || is_wrong).unwrap_or(mapping.sample)
-    }
-}
-
-/// The files of each argument; `*` and `?` stand for what a shell would put there.
-///
-/// # Errors
-/// When no file matches a pattern.
-pub fn files_of(arguments: &[PathBuf]) -> Result<Vec<Vec<PathBuf>>, ImportError> {
-    let of_argument = |typed: &PathBuf| {
-        let pattern = typed.to_string_lossy();
-        if !pattern.contains(['*', '?']) || typed.exists() {
-            return Ok(vec![typed.clone()]);
-        }
-        let refused = |why: &str| ImportError::content(typed, why);
-        let matches = |pattern: &str| -> Result<Vec<PathBuf>, glob::PatternError> {
-            Ok(glob::glob(pattern)?.flatten().filter(|path| path.is_file()).collect())
-        };
-        let mut files = matches(&pattern).unwrap_or_default();
-        if files.is_empty() {
-            // Brackets may be letters of a name.
-            files = matches(&pattern.replace('[', "[[]")).map_err(|error| refused(error.msg))?;
-        }
-        if files.is_empty() {
-            return Err(refused("no file matches this pattern"));
-        }
-        files.sort_by(|a, b| by_numbers(a, b));
-        Ok(files)
-    };
-    arguments.iter().map(of_argument).collect()
-}
-
-/// The order of files by the numbers in the names of their folders (`Cycle10/data.pvtu` is after `Cycle9/data.pvtu`), then by
-/// those in their own.
-fn by_numbers(a: &Path, b: &Path) -> Ordering {
-    let above = |path: &Path| path.parent().and_then(Path::parent).map(Path::to_owned);
-    let compare = |a: &str, b: &str| numbers_in(a).partial_cmp(&numbers_in(b)).unwrap_or(Ordering::Equal);
-    (above(a).cmp(&above(b)))
-        .then_with(|| compare(&folder_of(a), &folder_of(b)))
-        .then_with(|| a.parent().cmp(&b.parent()))
-        .then_with(|| compare(&stem_of(a), &stem_of(b)))
-}
-
-/// Whether the names of two files, or of their folders, differ by their numbers alone and these fall.
-fn goes_back(before: &Path, after: &Path) -> bool {
-    let falls = |before: &str, after: &str| {
-        without_numbers(before) == without_numbers(after) && numbers_in(after) < numbers_in(before)
-    };
-    let above = |path: &Path| path.parent().and_then(Path::parent).map(Path::to_owned);
-    if before.parent() == after.parent() {
-        return falls(&stem_of(before), &stem_of(after));
-    }
-    before.file_name() == after.file_name()
-        && above(before) == above(after)
-        && falls(&folder_of(before), &folder_of(after))
-}
-
-/// The name of a file without its extension.
-fn stem_of(path: &Path) -> String {
-    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
-}
-
-/// The name of the folder that a file is in.
-fn folder_of(path: &Path) -> String {
-    path.parent().and_then(Path::file_name).unwrap_or_default().to_string_lossy().into_owned()
-}
-
-/// Whether all files are tables.
-///
-/// # Errors
-/// When one cannot be read.
-pub fn are_tables(given: &[Vec<PathBuf>]) -> Result<bool, ImportError> {
-    for path in given.iter().flatten() {
-        if Kind::of(path)? != Kind::Table {
-            return Ok(false);
-        }
-    }
-    Ok(true)
-}
 
 /// The runs of files: tables are one run, and of files with arrays those of one mesh.
 ///
@@ -270,112 +154,6 @@ fn with_changing_meshes(readings: Vec<Reading>) -> Vec<Reading> {
     joined
 }
 
-/// A state of a frame whose arrays run over times.
-struct Listed<'a> {
-    time: f64,
-    /// Its place among the times, from 1.
-    number: usize,
-    /// Its rows, where each has its own time.
-    rows: &'a [usize],
-}
-
-/// What is done with a state: its place in a list of times, its frame and how many there are.
-type TakeState<'a> = dyn FnMut(Option<Listed>, &Frame, usize) -> Result<(), ImportError> + 'a;
-
-/// Hands over the states of a frame, with their time where its arrays run over times, and how many there are.
-fn each_time(
-    step: &Step,
-    frame: &Frame,
-    mapping: &Mapping,
-    notes: &mut Vec<String>,
-    take: &mut TakeState<'_>,
-) -> Result<(), ImportError> {
-    let refused = |why: String| ImportError::content(&step.file, why);
-    let times = times_in(frame, mapping, notes);
-    if times.is_empty() {
-        let names_time = |column: Column| {
-            let spelled = mapping.columns.get(column).into_iter().flat_map(|typed| spellings(typed));
-            spelled.filter_map(|spelled| spelled.axes).any(|axes| axes.contains(&Axis::Time))
-        };
-        if Column::ALL.into_iter().any(names_time) {
-            return Err(refused("its times are not known: name their array as `t` in [columns]".to_owned()));
-        }
-        return take(None, frame, 1);
-    }
-    let used = |array: &Array| use_of(array, frame, mapping);
-    let states = states_by_time(frame, &times, &used).map_err(refused)?;
-    for place in 0..states.count() {
-        if let Some((time, frame)) = states.state(place) {
-            let listed = Listed { time, number: place + 1, rows: states.rows_of(place) };
-            take(Some(listed), &frame, states.count())?;
-        }
-    }
-    Ok(())
-}
-
-/// The times over which the arrays of a frame run, in the mapping's unit: those of the array that the mapping names, or of the
-/// file's own list.
-fn times_in(frame: &Frame, mapping: &Mapping, notes: &mut Vec<String>) -> Vec<f64> {
-    let mut in_unit = |array: &str, times: Vec<f64>| match said_unit(frame, array, Column::Time, mapping) {
-        SaidUnit::Factor(factor, note) => {
-            notes.push(note);
-            times.into_iter().map(|time| time * factor).collect()
-        }
-        SaidUnit::AsMapped | SaidUnit::Unfit(_) => times,
-    };
-    let spelled = mapping.columns.t.as_deref().into_iter().flat_map(spellings);
-    let of_array = |array: &Array, component: Option<usize>| -> Vec<f64> {
-        array
-            .values
-            .iter()
-            .skip(component.unwrap_or(0))
-            .step_by(component.map_or(1, |_| array.components))
-            .copied()
-            .collect()
-    };
-    let named = spelled
-        .filter_map(|spelled| Some((frame.array(spelled.name, spelled.on)?, spelled.component)))
-        .find(|(array, _)| !array.values.is_empty());
-    match named {
-        // Each point of a mesh has the time of its state.
-        Some((array, _)) if array.on != Association::Whole && frame.cells.is_some() => Vec::new(),
-        Some((array, component)) => {
-            let times = of_array(array, component);
-            if times.len() > 1 || !frame.times.is_empty() { in_unit(&array.name, times) } else { Vec::new() }
-        }
-        None => {
-            let is_list =
-                |array: &&Array| array.values == frame.times && frame.units.contains_key(&array.name);
-            let name = frame.arrays.iter().find(is_list).map_or("", |array| &array.name);
-            in_unit(name, frame.times.clone())
-        }
-    }
-}
-
-/// How the mapping uses an array, if it does.
-fn use_of(array: &Array, frame: &Frame, mapping: &Mapping) -> Option<Use> {
-    let mut found: Option<Use> = None;
-    let id = mapping.displacement.as_ref().and_then(|source| source.id.as_ref());
-    let columns = Column::ALL.into_iter().filter(|column| *column != Column::Time);
-    let columns =
-        columns.filter_map(|column| Some((mapping.columns.get(column)?, column.quantity().is_some())));
-    let others = id.into_iter().chain(mapping.rows.equals.keys()).map(|typed| (typed, false));
-    for (typed, is_quantity) in columns.chain(others) {
-        // The first alternative that is there is the one that is read.
-        let first = spellings(typed).find(|spelled| frame.array(spelled.name, spelled.on).is_some());
-        let Some(spelled) = first.filter(|spelled| {
-            frame.array(spelled.name, spelled.on).is_some_and(|named| std::ptr::eq(named, array))
-        }) else {
-            continue;
-        };
-        let usage = found.get_or_insert_default();
-        usage.is_quantity |= is_quantity;
-        usage.has_component |= spelled.component.is_some();
-        usage.axes = usage.axes.take().or(spelled.axes);
-    }
-    found
-}
-
 /// What distinguishes runs: folder, file name, cells over the height, points.
 type Key = (PathBuf, String, Option<usize>, usize);
 
@@ -392,15 +170,6 @@ fn key_of(step: &Step, is_one_of_many: bool, are_folders: bool, frame: &Frame, c
         folder.to_owned()
     };
     (folder, name, cells, points)
-}
-
-/// A name with each number replaced by one `#`.
-fn without_numbers(name: &str) -> String {
-    let mut blank = name.replace(|symbol: char| symbol.is_ascii_digit(), "#");
-    while blank.contains("##") {
-        blank = blank.replace("##", "#");
-    }
-    blank
 }
 
 /// A run that is being read.
@@ -568,174 +337,12 @@ impl Reading {
     }
 }
 
-impl Run {
-    /// Leaves out quantities, which no state then has or must have.
-    pub fn leave_out(&mut self, quantities: &[Quantity]) {
-        for quantity in quantities {
-            for state in &mut self.states {
-                state.change(&|state| match quantity {
-                    Quantity::Pressure => state.pressure.clear(),
-                    Quantity::EffectiveStress => state.effective_stress.clear(),
-                    Quantity::Displacement => {
-                        state.displacement.clear();
-                        state.horizontal_displacement.clear();
-                    }
-                    Quantity::Settlement => state.surface_displacement = None,
-                    Quantity::LoadFactor => {}
-                });
-            }
-            self.expected.leave_out(*quantity);
-        }
-        self.without.extend(quantities);
-    }
-
-    /// Leaves out the state at the start if its pressure is 0 everywhere.
-    fn leave_out_unloaded(&mut self) {
-        let is_loaded = |state: &SampledState| {
-            state.time > 0.0 || state.pressure.is_empty() || state.pressure.iter().any(|p| *p != 0.0)
-        };
-        let before = self.states.len();
-        self.states.retain(is_loaded);
-        if self.states.len() < before && !self.states.is_empty() {
-            let note = "the state at t = 0 is left out: its pressure is 0, so the load is not applied yet";
-            self.notes.push(note.to_owned());
-        }
-    }
-
-    /// Gives nodes of graded meshes the weights of the lengths that they stand for, where the file has no weights.
-    fn weigh_nodes(&mut self, mapping: &Mapping, body: SolvedBody) {
-        let sample = self.sample(mapping);
-        if mapping.columns.volume.is_some() {
-            return;
-        }
-        let mut is_weighed = false;
-        for state in &mut self.states {
-            let beside = state.beside.iter_mut().map(|set| (set.sample.unwrap_or(sample), &mut set.state));
-            let sets = beside.collect::<Vec<_>>();
-            for (_, set) in sets.into_iter().filter(|(sample, _)| *sample != Sample::Centres) {
-                is_weighed |= weigh(set, body.height, body.length);
-            }
-            is_weighed |= sample != Sample::Centres && weigh(state, body.height, body.length);
-        }
-        if is_weighed {
-            let note = "weight = the length that each node represents, because they are unevenly spaced";
-            self.notes.push(note.to_owned());
-        }
-    }
-
-    /// Refuses files whose times are listed in their order and whose numbers are in another one: a shell sorts `a_10` before
-    /// `a_9`.
-    fn files_are_in_order(&self, mapping: &Mapping) -> Result<(), ImportError> {
-        let is_listed = |path: &PathBuf| {
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            !mapping.time.list.is_empty() && !mapping.time.files.contains_key(&*name)
-        };
-        let listed: Vec<&PathBuf> = self.files.iter().filter(|path| is_listed(path)).collect();
-        let Some(pair) = listed.windows(2).find(|pair| goes_back(pair[0], pair[1])) else { return Ok(()) };
-        Err(ImportError::content(
-            pair[1],
-            format!(
-                "it comes after {}, but [time] counts the files in their order: give them in the order of \
-                 their numbers, as a quoted pattern does, or write [time] files",
-                pair[0].display()
-            ),
-        ))
-    }
-
-    /// Notes how many rows repeat another one with equal values; they count once.
-    fn note_repeated(&mut self, rows: usize) {
-        let kept = self.states.iter().flat_map(|state| state.sets(Sample::Points));
-        let kept: usize = kept.map(|(_, state)| state.initial_height.len()).sum();
-        if kept < rows {
-            let note = format!(
-                "{} of {rows} rows repeat the place and values of another and count once",
-                rows - kept
-            );
-            self.notes.push(note);
-        }
-    }
-
-    /// Adds the settlement curve, if the mapping names a file for it.
-    fn attach_settlement(&mut self, mapping: &Mapping, body: SolvedBody) -> Result<(), ImportError> {
-        let Some(series) = &mapping.settlement else { return Ok(()) };
-        let curve = Curve::read(series, self.files.first().map(PathBuf::as_path), mapping, body)?;
-        let matched = curve.attach(&mut self.states);
-        self.contradictions.extend(curve.contradictions);
-        let file = curve.file;
-        let is_told = curve.told.is_ended || self.unended.contains(&file);
-        for (own, of_curve) in [(&mut self.notes, curve.told.notes), (&mut self.doubts, curve.told.doubts)] {
-            for told in of_curve {
-                if !own.contains(&told) {
-                    own.push(told);
-                }
-            }
-        }
-        self.expected.settlement = matched > 0;
-        self.notes.push(format!(
-            "settlement from {} at {matched} of {} times, each the nearest within 0.1 %",
-            if series.file.is_empty() { file.display().to_string() } else { series.file.clone() },
-            self.states.len()
-        ));
-        self.unended.extend((!is_told).then_some(file));
-        Ok(())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::import::mapping::Column;
     use oedometer_formats::Array;
     use oedometer_input::source::StudySource;
-
-    #[test]
-    fn places_are_as_declared_or_as_found_and_what_lies_on_cells_is_at_no_node() {
-        use Sample::{Centres, Nodes, Points};
-        let convention = Mapping::convention(crate::import::mapping::Axes::Column).expect("a constant");
-        for (declared, is_sample_open, shown, told) in [
-            (Nodes, false, None, Nodes),
-            (Nodes, false, Some(Nodes), Nodes),
-            (Nodes, false, Some(Centres), Centres),
-            (Points, false, Some(Centres), Points),
-            (Centres, false, Some(Nodes), Centres),
-            (Points, true, Some(Nodes), Nodes),
-            (Points, true, None, Points),
-        ] {
-            let mapping = Mapping { sample: declared, is_sample_open, ..convention.clone() };
-            let run = Run { sample: shown, ..Run::default() };
-            assert_eq!(run.sample(&mapping), told, "{declared:?} {shown:?}");
-        }
-    }
-
-    #[test]
-    fn files_go_back_where_the_numbers_of_like_names_fall() {
-        for (before, after, told) in [
-            ("a_9.vtu", "a_10.vtu", false),
-            ("a_10.vtu", "a_9.vtu", true),
-            ("a_10.vtu", "b_9.vtu", false),
-            ("col_ts_50_t_4.0875.vtu", "col_ts_100_t_8.175.vtu", false),
-            ("t_0.5.csv", "t_0.25.csv", true),
-            ("Cycle9/a.pvtu", "Cycle10/a.pvtu", false),
-            ("Cycle10/a.pvtu", "Cycle9/a.pvtu", true),
-            ("x/Cycle10/a.pvtu", "y/Cycle9/a.pvtu", false),
-            ("mesh-20/a_1.vtu", "mesh-10/a_2.vtu", false),
-        ] {
-            assert_eq!(goes_back(Path::new(before), Path::new(after)), told, "{before} {after}");
-        }
-    }
-
-    #[test]
-    fn patterns_find_files_in_the_order_of_their_numbers() {
-        let folder = tempfile::TempDir::new().expect("a folder");
-        for name in ["a_10.vtk", "a_9.vtk", "b_1.vtk", "a_100.vtk"] {
-            std::fs::write(folder.path().join(name), "").expect("a file");
-        }
-        let given = files_of(&[folder.path().join("a_*.vtk")]).expect("files");
-        let names: Vec<_> = given[0].iter().map(|path| path.file_name().expect("a name")).collect();
-        assert_eq!(names, ["a_9.vtk", "a_10.vtk", "a_100.vtk"]);
-        assert!(files_of(&[folder.path().join("c*")]).is_err());
-        assert_eq!(without_numbers("col_ts_50_t_4.0875.vtu"), "col_ts_#_t_#.#.vtu");
-    }
 
     fn reading() -> Reading {
         let key = (PathBuf::new(), String::new(), None, 0);

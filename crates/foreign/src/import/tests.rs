@@ -308,7 +308,7 @@ fn a_table_ends_with_a_line_break_of_any_kind_or_has_nothing() {
 
 #[test]
 fn patterns_stand_for_files_by_folder_and_number_and_a_name_with_a_star_for_itself() {
-    use crate::import::runs::{are_tables, files_of};
+    use crate::import::given_files::{are_tables, files_of};
     let folder = tempfile::TempDir::new().expect("a folder");
     let at = |name: &str| folder.path().join(name);
     for name in ["b/s_2.csv", "a/s_10.csv", "a/s_9.csv", "b/s_1.csv", "a/s.csv", "a/s_*.csv"] {
@@ -344,7 +344,7 @@ fn patterns_stand_for_files_by_folder_and_number_and_a_name_with_a_star_for_itse
 #[test]
 fn what_is_left_out_is_in_no_state_and_expected_of_none() {
     use crate::import::expected::Expected;
-    use crate::import::runs::Run;
+    use crate::import::run::Run;
     use oedometer_case::quantity::Quantity;
     let state = || SampledState {
         pressure: vec![1.0],

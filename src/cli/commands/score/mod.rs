@@ -344,7 +344,7 @@ fn finding_below(
 mod tests {
     use super::*;
     use crate::case::quantity::Sample;
-    use crate::import::runs::Run;
+    use crate::import::run::Run;
     use crate::record::ErrorRow;
     use crate::score::Score;
 
