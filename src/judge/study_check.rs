@@ -244,9 +244,14 @@ impl StudyCheck {
         self
     }
 
+    /// Expectations that are not met.
+    pub fn unmet(&self) -> impl Iterator<Item = &Judgement> {
+        self.judgements.iter().filter(|judgement| !judgement.verdict.pass)
+    }
+
     /// How many expectations are met.
     pub fn met(&self) -> usize {
-        self.judgements.iter().filter(|judgement| judgement.verdict.pass).count()
+        self.judgements.len() - self.unmet().count()
     }
 
     /// Whether every expectation is met, by records that are sound.
@@ -321,12 +326,11 @@ impl StudyCheck {
 
     /// What fails, golden values aside, each once: unmet expectations, failed cases, and records that break a balance or a bound.
     pub fn objections(&self) -> Vec<Objection<'_>> {
-        let unmet = self.judgements.iter().filter(|judgement| !judgement.verdict.pass);
         let failing = |judgement: &Judgement| {
             let checks = judgement.verdict.checks.iter().filter(|check| !check.pass && !check.follows);
             checks.map(|check| check.name.clone()).collect::<Vec<_>>()
         };
-        let unmet = grouped(unmet, |judgement| (judgement.line, failing(judgement)));
+        let unmet = grouped(self.unmet(), |judgement| (judgement.line, failing(judgement)));
         let mut objections: Vec<Objection<'_>> = Vec::new();
         for ((line, _), all) in unmet {
             let (first, alike) = (all[0], all.len() - 1);
@@ -367,8 +371,7 @@ impl StudyCheck {
     /// How the check came out, the worst first: a verdict, an unsound record or a value that moved,
     /// a failed case, a golden value that is missing, stale, or of other inputs.
     pub fn end(&self) -> CheckEnd {
-        let unmet = self.judgements.iter().any(|judgement| !judgement.verdict.pass);
-        if unmet || !self.unsound.is_empty() || self.has_moved() {
+        if self.unmet().next().is_some() || !self.unsound.is_empty() || self.has_moved() {
             CheckEnd::Failed
         } else if !self.failed_cases.is_empty() {
             CheckEnd::CaseFailed

@@ -3,7 +3,6 @@
 use crate::campaign::taken_over::TakenOver;
 use crate::golden::compare::Change;
 use crate::judge::study_check::{CheckEnd, StudyCheck};
-use crate::report::failures::failures_of;
 use crate::report::tables::golden_changes::sentence;
 
 /// Annotations before the rest is only counted: GitHub shows ten per step.
@@ -25,8 +24,13 @@ pub fn annotations_of(checks: &[StudyCheck], file_of: impl Fn(&str) -> Option<St
         for diagnosis in &check.diagnoses {
             add(level, 1, "diagnosis", diagnosis);
         }
-        for failure in failures_of(check).into_iter().flatten() {
-            add("error", failure.line, failure.subject, &failure.sentence);
+        for judgement in check.unmet() {
+            let (class, reason) = (judgement.verdict.classification.class.name(), &judgement.verdict.reason);
+            let class = if reason.starts_with(class) { String::new() } else { format!("{class}: ") };
+            add("error", judgement.line, &judgement.subject, &format!("{class}{reason}"));
+        }
+        for note in check.failed_cases.iter().chain(&check.unsound) {
+            add("error", 1, &note.case, &note.sentence);
         }
         if let Some(told) = check.told_inputs() {
             add("error", 1, "inputs changed", &told);
@@ -74,7 +78,7 @@ mod tests {
     use super::*;
     use crate::golden::GoldenError;
     use crate::judge::study_check::CaseNote;
-    use crate::report::failures::tests::{check, group};
+    use crate::report::tests::{check, group};
 
     #[test]
     fn nine_are_shown_and_the_others_counted() {

@@ -13,7 +13,6 @@ use crate::render::marked_text::wrapped;
 use crate::render::page::{self, Block};
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
-use crate::report::failures::failures_of;
 use crate::report::sections;
 use crate::report::tables::golden_changes::{judgement_of, summary};
 use oedometer_wording::count_of;
@@ -214,11 +213,10 @@ pub fn objections_of(check: &StudyCheck, width: usize) -> Option<String> {
 pub fn next_command(check: &StudyCheck, file: Option<&str>) -> Option<String> {
     let file = file?;
     let explain = |what: &str| Some(format!("oedometer explain \"{what}\" {file}"));
-    let [unmet, failed, unsound] = failures_of(check);
-    match (check.groups.first(), failed.first().or(unsound.first())) {
+    match (check.groups.first(), check.failed_cases.first().or(check.unsound.first())) {
         (Some(group), _) if group.change == Change::Moved => explain(&group.worst.key.to_string()),
-        (_, Some(failure)) => explain(failure.subject),
-        _ if !unmet.is_empty() => Some(format!("oedometer report {file}")),
+        (_, Some(note)) => explain(&note.case),
+        _ if check.unmet().next().is_some() => Some(format!("oedometer report {file}")),
         (None, _) if check.golden.is_ok() && check.other_inputs.is_empty() => None,
         // What cannot be read says itself what to do, and what was not run cannot be accepted.
         _ if matches!(&check.golden, Err(error) if !error.is_missing()) || check.held_back > 0 => None,
@@ -267,7 +265,7 @@ pub fn all_judgements(checks: &[StudyCheck]) -> Table {
 
 /// The verdict in words; what to do about golden values that are missing is no part of a short one.
 fn headline(check: &StudyCheck, is_short: bool) -> String {
-    let [unmet, failed, unsound] = failures_of(check).map(|failures| failures.len());
+    let [failed, unsound] = [&check.failed_cases, &check.unsound].map(Vec::len);
     let expectations = match check.judgements.len() {
         0 if check.expected > 0 => {
             format!("none of {} judged", count_of(check.expected, "expectation", "expectations"))
@@ -275,7 +273,7 @@ fn headline(check: &StudyCheck, is_short: bool) -> String {
         0 => "no expectations".to_owned(),
         // Those of cases that were not run count as well.
         judged => {
-            let met = judged - unmet;
+            let met = check.met();
             match check.unjudged {
                 0 => format!("{met} of {judged} expectations met"),
                 left => format!("{met} of {} expectations met, {left} not judged", judged + left),
@@ -291,7 +289,9 @@ fn headline(check: &StudyCheck, is_short: bool) -> String {
         Ok(differences) if differences.is_empty() => format!(", {} golden values agree", check.agreeing),
         Ok(differences) => format!(", {} golden values agree, {} do not", check.agreeing, differences.len()),
         // What fails comes first; values that are wrong are not worth accepting.
-        Err(error) if error.is_missing() && unmet + failed + unsound > 0 => String::new(),
+        Err(error) if error.is_missing() && check.met() < check.judgements.len() || failed + unsound > 0 => {
+            String::new()
+        }
         Err(GoldenError::Missing(path)) => {
             let advice = if is_short { "" } else { ": accept these if they look right" };
             format!(", no golden values yet ({}){advice}", path.display())
@@ -383,7 +383,7 @@ mod tests {
     use crate::golden::measure::key;
     use crate::judge::study_check::CaseNote;
     use crate::render::table::columns;
-    use crate::report::failures::tests::{check, group};
+    use crate::report::tests::{check, group};
     use oedometer_convergence::ParetoChange;
 
     #[test]
@@ -535,7 +535,7 @@ mod tests {
             ),
         ] {
             assert_eq!(next_command(&check, Some("s.toml")).as_deref(), next, "{check:?}");
-            let failures: usize = failures_of(&check).iter().map(Vec::len).sum();
+            let failures = check.unmet().count() + check.failed_cases.len() + check.unsound.len();
             assert_eq!(word == "pass" && failures == 0, check.end() == CheckEnd::Pass, "{check:?}");
             let csv = all_judgements(&[check]).to_csv().expect("a table");
             let row = csv.lines().last().expect("a row of golden values");

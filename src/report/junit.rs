@@ -3,7 +3,6 @@
 use crate::campaign::taken_over::TakenOver;
 use crate::judge::study_check::{CheckEnd, StudyCheck};
 use crate::judge::verdict::{Check, Judgement, VerdictOutcome};
-use crate::report::failures::failures_of;
 use crate::report::tables::golden_changes::sentence;
 use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::collections::BTreeMap;
@@ -45,10 +44,9 @@ pub fn junit(checks: &[StudyCheck]) -> Result<String, SerializeError> {
                 suite.add_test_case(case);
             }
         }
-        let [_, failed, unsound] = failures_of(check);
-        for failure in failed.into_iter().chain(unsound) {
-            let name = format!("{}/{}/run", check.study, failure.subject);
-            suite.add_test_case(TestCase::new(name, status(false, &failure.sentence)));
+        for note in check.failed_cases.iter().chain(&check.unsound) {
+            let name = format!("{}/{}/run", check.study, note.case);
+            suite.add_test_case(TestCase::new(name, status(false, &note.sentence)));
         }
         let (agrees, sentence) = match &check.golden {
             Ok(differences) => {
@@ -148,7 +146,7 @@ fn status(pass: bool, sentence: &str) -> TestCaseStatus {
 mod tests {
     use super::*;
     use crate::report::annotations::annotations_of;
-    use crate::report::failures::tests::check;
+    use crate::report::tests::check;
 
     #[test]
     fn a_changed_input_fails_in_every_form_although_no_value_moved() {

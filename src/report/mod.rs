@@ -4,10 +4,12 @@
 pub mod annotations;
 pub mod answers;
 pub mod check_page;
-pub mod failures;
 pub(crate) mod history_tables;
 pub mod junit;
 pub mod sections;
 pub mod studies_page;
 pub mod study_page;
 pub mod tables;
+
+#[cfg(test)]
+mod tests;

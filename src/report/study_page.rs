@@ -69,12 +69,12 @@ fn verdict(one: &StudyResults<'_>) -> Callout {
         let fail = count_of(check.unsound.len(), "check of its runs fails", "checks of its runs fail");
         let _ = write!(text, " {fail}, first {}: {}.", first.case, first.sentence);
     }
-    let failing = failing(one);
-    for judgement in failing.iter().take(MOST_REASONS) {
+    for judgement in check.unmet().take(MOST_REASONS) {
         let _ = write!(text, "\n\n`{}`: {}", judgement.subject, judgement.verdict.reason);
     }
-    if failing.len() > MOST_REASONS {
-        let _ = write!(text, "\n\nAnd {} more, below.", failing.len() - MOST_REASONS);
+    let more = check.unmet().count().saturating_sub(MOST_REASONS);
+    if more > 0 {
+        let _ = write!(text, "\n\nAnd {more} more, below.");
     }
     (mood_of(one), text)
 }
@@ -85,13 +85,9 @@ pub fn mood_of(one: &StudyResults<'_>) -> Mood {
     if one.check.judgements.is_empty() && passes { Mood::Note } else { Mood::of(passes) }
 }
 
-fn failing<'r>(one: &'r StudyResults<'_>) -> Vec<&'r Judgement> {
-    one.check.judgements.iter().filter(|judgement| !judgement.verdict.pass).collect()
-}
-
 /// The expectations that are not met.
 fn unmet(one: &StudyResults<'_>) -> Option<Section> {
-    let failing = failing(one);
+    let failing: Vec<&Judgement> = one.check.unmet().collect();
     let table = Block::Table(judgements_table("Expectations that are not met", &failing));
     (!failing.is_empty()).then(|| Section::new("Not as expected", "unmet", vec![table]))
 }
