@@ -117,7 +117,7 @@ fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<
             // Points do not integrate the slopes of splines exactly: at a side wall forces across remain, less with more
             // points per cell (`B2` with 2, 4, 8 on a column of 13 cells: 62 %, 3.2 %, 0.2 % apart).
             let is_exact = !base.method.trim_start_matches("TL-").starts_with('B');
-            is_line && is_same && is_exact && is_held && base.cells <= 24 && has_same_steps
+            is_line && is_same && is_exact && is_held && base.cells <= 12 && has_same_steps
         }
         Relation::TotalAndFrozen => {
             other.method = format!("TL-{}", base.method);

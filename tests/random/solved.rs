@@ -5,7 +5,7 @@ use oedometer::{Kernel, Record, Status, estimated_seconds, run_case, soundness};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Estimated seconds of a case that is still drawn: a bound on its work, and not on a clock.
-const LONGEST: f64 = 0.12;
+const LONGEST: f64 = 0.05;
 
 /// Whether a checker of studies takes options, and they are short enough for a sweep.
 pub fn is_short(options: &Options) -> bool {

@@ -25,7 +25,7 @@ time_step = [{ stable = 0.4 }]
 "#;
 
 /// Moments of the kills, spread over a run.
-const KILLS: u32 = 50;
+const KILLS: u32 = 30;
 
 fn program() -> Command {
     Command::new(PROGRAM)

@@ -516,9 +516,7 @@ fn a_reference_that_refuses_fails_its_case_and_no_other() {
     // Wherever the study stands, and though nothing else is left to run.
     fs::write(at.join("other.toml"), STUDY).expect("a file");
     let (refusing, sound) = ("refusing.toml", ["short.toml", "other.toml"]);
-    let orders =
-        [[refusing, sound[0], sound[1]], [sound[0], refusing, sound[1]], [sound[0], sound[1], refusing]];
-    for studies in orders {
+    for studies in [[refusing, sound[0], sound[1]], [sound[0], sound[1], refusing]] {
         for (command, code) in
             [(&["run", "--resume"][..], 3), (&["report"], 3), (&["report", "--from-records"], 0)]
         {

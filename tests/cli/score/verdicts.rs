@@ -463,7 +463,7 @@ fn two_runs_at_places_of_their_own_are_diagnosed_as_two_and_not_as_a_mixture() {
 fn many_times_take_as_long_as_their_number() {
     let folder = TempDir::new().expect("a folder");
     let at = folder.path();
-    let times = 40_000;
+    let times = 10_000;
     let mut text = "t,y,p,u_y\n".to_owned();
     for time in 0..times {
         for node in 0..3 {
@@ -477,9 +477,9 @@ fn many_times_take_as_long_as_their_number() {
     assert_eq!(told.code, 0);
     assert_eq!(
         told.out.lines().filter(|line| line.split_whitespace().any(|word| word == "pressure")).count(),
-        40_000
+        10_000
     );
-    assert!(started.elapsed().as_secs() < 600, "{:?}", started.elapsed());
+    assert!(started.elapsed().as_secs() < 60, "{:?}", started.elapsed());
 }
 
 /// Pressures of a column at its nodes on a mesh, each times a factor, without some of them.

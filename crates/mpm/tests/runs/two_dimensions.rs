@@ -103,7 +103,7 @@ fn methods() -> Vec<Method> {
 fn the_paper_s_grid_is_its_column_at_small_strain_whatever_the_method() {
     for scene in [&TERZAGHI, &SINGLE_MODE] {
         for method in methods().into_iter().filter(|method| method.configuration.is_none()) {
-            let (column, plane) = run_in_both_dimensions(scene, method, 1e3, 0.01, Drag::Explicit);
+            let (column, plane) = run_in_both_dimensions(scene, method, 1e3, 0.005, Drag::Explicit);
             assert_same(&format!("{} {method}", scene.name), &column, &plane, 1e-10);
         }
     }
@@ -114,7 +114,7 @@ fn the_paper_s_grid_is_its_column_at_200_kpa_whatever_the_method() {
     // Points of a column share the length of their cell (`-cells`); domains that turn do so in the column alone.
     let turns = |method: &Method| method.basis == Basis::Cpdi && method.memory == Memory::Cells;
     for method in methods().into_iter().filter(|method| !turns(method)) {
-        let (column, plane) = run_in_both_dimensions(&XIE_LEO, method, 2e5, 0.03, Drag::Implicit);
+        let (column, plane) = run_in_both_dimensions(&XIE_LEO, method, 2e5, 0.015, Drag::Implicit);
         assert_same(&format!("xie-leo {method}"), &column, &plane, 1e-9);
     }
 }

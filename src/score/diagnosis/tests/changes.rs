@@ -623,8 +623,7 @@ fn every_change_is_named_of(kind: ReferenceKind) {
         (scenes().into_iter().enumerate()).find(|(_, scene)| scene.kind == kind).expect("a scene");
     let others = [(1, 0.0), (0, NOISES[0]), (2, 0.0), (0, NOISES[1])];
     // Of layers, whose solution takes long, what they have of their own: soils, their order, and where water leaves.
-    let of_layers =
-        ["k x 5.000e0", "E x 1.7", "u in mm with the other sign", "drained at the base", "nothing drains"];
+    let of_layers = ["k x 5.000e0", "E x 1.7", "drained at the base", "nothing drains"];
     let is_whole = |change: &Change| kind != ReferenceKind::Layered || of_layers.contains(&&*change.name);
     let every_other = match kind {
         ReferenceKind::Layered => usize::MAX,
