@@ -244,8 +244,16 @@ fn numbers_that_no_run_can_go_on_from_are_refused_by_every_integrator() {
 fn times_and_rules_at_the_edge_of_the_numbers_are_refused_or_end_at_the_deadline() {
     for integrator in ["explicit", "semi-implicit", "implicit"] {
         let solve = |more: &[&str]| {
-            let first =
-                ["solve", "terzaghi", "--integrator", integrator, "--cells", "4", "--set", "case_seconds=0.2"];
+            let first = [
+                "solve",
+                "terzaghi",
+                "--integrator",
+                integrator,
+                "--cells",
+                "4",
+                "--set",
+                "case_seconds=0.2",
+            ];
             call(Path::new("."), &[&first[..], more].concat())
         };
         for (factors, said) in [
