@@ -1,5 +1,7 @@
 //! Matches the times of the results to be scored and compares each with the references.
 
+mod other_water;
+
 use crate::case::{Case, Quantity, Sample};
 use crate::import::Absent;
 use crate::import::mapping::Mapping;

@@ -543,6 +543,38 @@ fn what_is_not_judged_is_told_and_strict_does_not_pass_it() {
     }
 }
 
+#[test]
+fn the_water_is_named_where_errors_fall_against_that_of_the_other_kind_alone() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    let soft = ["--set", "material.water_bulk_modulus=5e8"];
+    let told = |solution: &str, against: &str| {
+        for cells in [10, 20, 40, 80] {
+            let (factor, name) = (1.0 + 0.8 / f64::from(cells * cells), format!("{cells}.csv"));
+            let set = if solution == "terzaghi" { &soft[..] } else { &[] };
+            nodes(at, (solution, &name), cells, factor, &[], set);
+        }
+        let files = ["score", "10.csv", "20.csv", "40.csv", "80.csv", "--cells", "10,20,40,80"];
+        let without = ["--without", "displacement,settlement", "--time-factor", "0.1"];
+        let scene = ["--scene", "terzaghi", "--reference", against];
+        let told = call(at, &[&files[..], &scene, &without, &soft].concat());
+        let sentences = told.err.lines().filter_map(|line| line.strip_prefix("diagnosis: 80.csv: "));
+        sentences.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let [stiff, soft] = ["terzaghi-incompressible", "terzaghi"];
+    for (solution, against) in [(stiff, stiff), (soft, soft)] {
+        assert_eq!(told(solution, against), [""; 0], "{solution} {against}");
+    }
+    for (solution, against, asked) in [
+        (stiff, soft, "is the water of your solver incompressible, n/K_w = 0?"),
+        (soft, stiff, "is the water of your solver compressible, n/K_w > 0?"),
+    ] {
+        let told = told(solution, against);
+        let end = format!("{asked} Then `--reference {solution}` is the right one");
+        assert!(told.len() == 1 && told[0].ends_with(&end), "{solution} {against}: {told:?}");
+    }
+}
+
 /// `T_v` = 0.1 of the seed column is 8.175 s.
 #[test]
 fn times_are_taken_as_a_study_takes_them() {

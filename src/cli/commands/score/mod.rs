@@ -109,6 +109,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let series = results.series();
     if let Some((series, cells)) = &series {
         results.keep_series(series, cells);
+        results.diagnose_water(series)?;
     }
     lead(&results, arguments, comparison.references)?;
     match arguments.format {
