@@ -1,4 +1,4 @@
-//! The waist: whatever solves cases, and what it leaves of one. Campaigns, records, judgements and pages know cases and
+//! The narrow interface: whatever solves cases, and what it leaves of one. Campaigns, records, judgements and pages know cases and
 //! outcomes alone.
 
 use crate::machine::Machine;
