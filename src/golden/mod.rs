@@ -394,9 +394,11 @@ mod tests {
         let all: Vec<&Case> = cases.iter().collect();
         let (two, three) = (cases[0].label(), cases[1].label());
         let now = file_of(&all, Case::label);
-        // The first case had another name.
-        let then = file_of(&all, |case| case.label().replace("cells=2", "coarse"));
-        assert_eq!(then.beside(&all), (now.clone(), vec![]));
+        // The first case had another name, or all had.
+        for (name, then) in [("cells=2", "coarse"), ("cells", "meshes")] {
+            let then = file_of(&all, |case| case.label().replace(name, then));
+            assert_eq!(then.beside(&all), (now.clone(), vec![]));
+        }
         // One that is gone has no partner, and each at most one.
         let (found, _) = file_of(&all, |case| case.label().replace("cells", "meshes")).beside(&all[..1]);
         let labels: Vec<String> = found.cases.keys().map(ToString::to_string).collect();

@@ -188,11 +188,12 @@ mod tests {
 
     #[test]
     fn a_mean_ratio_is_that_of_later_to_earlier_values_of_what_both_have() {
-        let of = |both: [f64; 4], alone: &str| {
-            let [a, b, c, zero] = ["a", "b", "c", "zero"].map(error);
-            golden([(a, both[0]), (b, both[1]), (c, both[2]), (zero, both[3]), (error(alone), 3.0)])
+        let of = |both: [f64; 5], alone: &str| {
+            let both = ["a", "b", "c", "from zero", "to zero"].map(error).into_iter().zip(both);
+            GoldenFile { values: both.chain([(error(alone), 3.0)]).collect(), ..golden([]) }
         };
-        let (before, after) = (of([2.0, -5.0, 1.0, 0.0], "gone"), of([16.0, 10.0, 1e3, 4.0], "new"));
+        let (before, after) =
+            (of([2.0, -5.0, 1.0, 0.0, 4.0], "gone"), of([16.0, 10.0, 1e3, 4.0, 0.0], "new"));
         let found = mean_ratio(&before, &after, |key| *key.case != *"c");
         assert!((found - 4.0).abs() < 1e-14, "8 and 2: {found}");
         assert_eq!(mean_ratio(&before, &after, |key| *key.case == *"gone"), 1.0);

@@ -436,6 +436,28 @@ mod tests {
     }
 
     #[test]
+    fn a_layer_is_covered_along_its_length_and_not_along_its_height() {
+        let column = ColumnParameters { length: 4.0, ..ColumnParameters::default() };
+        let reference = ReferenceKind::CosineLayer;
+        let layer =
+            Whole { parameters: &column, reference, volumes: &[4.0], is_declared: false, has_volumes: false };
+        // Five lines across, and five up of which the middle one is off by less than a place.
+        let lattice = |to: f64, off: f64| {
+            let places = (0..=4).flat_map(|i| (0..=4).map(move |j| [f64::from(i) / 4.0, f64::from(j) / 4.0]));
+            let shifted = places.map(|[x, y]| (to * x + if y == 0.5 { off } else { 0.0 }, y));
+            let (distances, heights): (Vec<f64>, Vec<f64>) = shifted.unzip();
+            at(0.1, &heights, &distances)
+        };
+        assert_eq!(layer.bare_length(&lattice(4.0, 0.0)), None);
+        assert!(layer.bare_length(&lattice(2.0, 0.0)).is_some_and(|bare| bare.ends_with("from the crest")));
+        let mut one_less = lattice(4.0, 2e-6);
+        one_less.initial_distance.remove(12);
+        one_less.initial_height.remove(12);
+        let told = "samples lie at 24 of the 25 crossings of their lines";
+        assert_eq!(layer.holes(&one_less), Some(told.to_owned()));
+    }
+
+    #[test]
     fn what_is_missing_is_told_with_its_time_its_place_and_how_much() {
         let column = ColumnParameters::default();
         let (kind, layer) = (ReferenceKind::Terzaghi, ReferenceKind::CosineLayer);

@@ -406,7 +406,14 @@ pub(crate) mod tests {
         for (quantity, norm) in [(Quantity::Displacement, Norm::L2), (Quantity::Settlement, Norm::Relative)] {
             assert!((value(quantity, norm) - 0.01).abs() < 1e-12, "{quantity:?}");
         }
-        assert!(found.worst.iter().all(|worst| worst.x.is_some()));
+        // Places are shares of the length, which is twice the height: the sample in the middle, and one beside the crest.
+        let mut other = state.clone();
+        other.pressure[12] += 1e3;
+        other.initial_distance[4] = 1.5 * RIM;
+        let found = score(&layer, &kinds, &[other], Sample::Nodes).expect("a score");
+        let worst = found.worst.iter().find(|worst| worst.quantity == Quantity::Pressure).expect("a place");
+        assert_eq!((worst.x, worst.zeta), (Some(0.5), 0.5));
+        assert!(found.errors.iter().any(|row| row.quantity == Quantity::Settlement));
         // The settlement is that of the sample under the crest; that at the far end differs.
         let far: Vec<usize> = (0..25).filter(|place| state.initial_distance[*place] > 0.1).collect();
         let only = |list: &[f64]| far.iter().map(|place| list[*place]).collect::<Vec<f64>>();

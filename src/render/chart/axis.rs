@@ -363,6 +363,9 @@ mod tests {
         let seen = [-0.0011, -0.0009, 1.0009, 1.0011].map(|one| unit.visible(one).is_ok());
         assert_eq!(seen, [false, true, true, false]);
         assert_eq!([-99.0, -5.0, 99.0].map(|one| unit.near(one)), [-20.0, -5.0, 21.0]);
+        let drawn = placed(Scale::Log10, 1.0, 100.0, 300.0, false);
+        let [one, ten] = [1.0, 10.0].map(|value| drawn.px(value).expect("on the axis"));
+        assert!((drawn.decade() - (ten - one)).abs() < 1e-9, "{} for {}", drawn.decade(), ten - one);
         let powers = [1e-30, 1e-5, 1e30].map(|one| decade.near(one).log10().round());
         assert_eq!(powers, [-20.0, -5.0, 21.0]);
         // Room of 4 % of two decades; of a sixth of a decade where the data take less than a third.
