@@ -27,7 +27,25 @@ pub fn undrained_wave_speed(soil: &Material) -> f64 {
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the innermost loops of the step")]
 pub fn drag_of_point(soil: &Material, pore_volume: f64, volume_ratio: f64) -> f64 {
-    pore_volume * soil.unit_weight_of_water() / soil.hydraulic_conductivity_at(volume_ratio)
+    let [drag] = drags_of_points(soil, &[pore_volume], &[volume_ratio]);
+    drag
+}
+
+/// Drags of some points of one soil.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the innermost loops of the step")]
+pub fn drags_of_points<const N: usize>(
+    soil: &Material,
+    pore_volumes: &[f64; N],
+    volume_ratios: &[f64; N],
+) -> [f64; N] {
+    let weight = soil.unit_weight_of_water();
+    let conductivities = soil.law.conductivities(soil.hydraulic_conductivity, volume_ratios);
+    let mut drags = *pore_volumes;
+    for p in 0..N {
+        drags[p] = drags[p] * weight / conductivities[p];
+    }
+    drags
 }
 
 /// Limit, s, of the explicit drag alone (docs/theory.md, Eq. 10):

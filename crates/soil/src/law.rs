@@ -76,10 +76,24 @@ impl Law {
     /// Hydraulic conductivity, m/s, at volume ratio `J` from the initial one (docs/theory.md, section 2).
     #[inline]
     pub fn conductivity(self, initial: f64, volume_ratio: f64) -> f64 {
+        let [conductivity] = self.conductivities(initial, &[volume_ratio]);
+        conductivity
+    }
+
+    /// The same at some volume ratios: the law is asked once.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the innermost loops of the step")]
+    pub fn conductivities<const N: usize>(self, initial: f64, volume_ratios: &[f64; N]) -> [f64; N] {
+        let mut conductivities = [initial; N];
         match self.data().conductivity {
-            Conductivity::Constant => initial,
-            Conductivity::SquareOfVolume => initial * volume_ratio * volume_ratio,
+            Conductivity::Constant => {}
+            Conductivity::SquareOfVolume => {
+                for p in 0..N {
+                    conductivities[p] = initial * volume_ratios[p] * volume_ratios[p];
+                }
+            }
         }
+        conductivities
     }
 
     /// `κ(J) = k/J` over the initial conductivity: the flux that a pressure gradient with respect to the initial
@@ -146,10 +160,10 @@ pub struct History {
 }
 
 /// A law with the parameters of a soil from which effective stresses are computed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct StressLaw {
-    /// The law.
-    pub law: Law,
+    /// How the stress follows the strain.
+    pub stress: Stress,
     /// Stiffness in the initial state.
     pub stiffness: Stiffness,
     /// Modulus of first loading over that of the initial state: 1 if they are equal, less otherwise.
@@ -196,50 +210,68 @@ impl StressLaw {
         strains: &[StrainIncrement<D>; N],
         deformation: impl Fn(usize) -> Tensor<D>,
     ) {
-        if self.law.is_hyperelastic() {
-            let mut ratios = [1.0; N];
-            for point in 0..N {
-                ratios[point] = strains[point].volume_ratio[1];
+        match self.stress {
+            Stress::NeoHookean => {
+                let mut ratios = [1.0; N];
+                for point in 0..N {
+                    ratios[point] = strains[point].volume_ratio[1];
+                }
+                let logarithms = elementary::ln_of_each(&ratios);
+                for point in 0..N {
+                    let deformation = deformation(point);
+                    stresses[point] =
+                        self.stiffness.neo_hookean_stress(&deformation, ratios[point], logarithms[point]);
+                }
+                return;
             }
-            let logarithms = elementary::ln_of_each(&ratios);
-            for point in 0..N {
-                stresses[point] =
-                    self.stiffness.neo_hookean_stress(&deformation(point), ratios[point], logarithms[point]);
+            Stress::Yields(update) => {
+                for point in 0..N {
+                    let components = strains[point].components();
+                    self.yielded(update, &mut stresses[point], &mut histories[point], &components);
+                }
+                return;
             }
-            return;
+            Stress::Rate(_) | Stress::Preconsolidated(_) => {}
         }
-        let stress = &self.law.data().stress;
-        if let Stress::Yields(update) = stress {
-            for point in 0..N {
-                let components = strains[point].components();
-                self.yielded(*update, &mut stresses[point], &mut histories[point], &components);
-            }
-            return;
-        }
-        let (mut changes, mut moduli) = ([[[0.0; D]; D]; N], [1.0; N]);
+        let mut changes = [[[0.0; D]; D]; N];
         for point in 0..N {
             changes[point] = self.elastic_stress(&strains[point].gradient, strains[point].dilation);
         }
-        for point in 0..N {
-            let [before, after] = strains[point].volume_ratio;
-            moduli[point] = match stress {
-                Stress::Preconsolidated(secant_share) => secant_share(
-                    -stresses[point][D - 1][D - 1],
-                    -changes[point][D - 1][D - 1],
-                    self.virgin_share,
-                    &mut histories[point].yield_stress,
-                ),
-                Stress::Rate(Modulus::InverseOfVolume) => 1.0 / (before * after).sqrt(),
-                _ => 1.0,
-            };
+        match self.stress {
+            Stress::Rate(Modulus::InverseOfVolume) => {
+                for point in 0..N {
+                    let [before, after] = strains[point].volume_ratio;
+                    scale(&mut changes[point], 1.0 / (before * after).sqrt());
+                }
+            }
+            Stress::Preconsolidated(secant_share) => {
+                for point in 0..N {
+                    let share = secant_share(
+                        -stresses[point][D - 1][D - 1],
+                        -changes[point][D - 1][D - 1],
+                        self.virgin_share,
+                        &mut histories[point].yield_stress,
+                    );
+                    scale(&mut changes[point], share);
+                }
+            }
+            _ => {}
         }
         for point in 0..N {
             for i in 0..D {
                 for j in 0..D {
-                    stresses[point][i][j] += moduli[point] * changes[point][i][j];
+                    stresses[point][i][j] += changes[point][i][j];
                 }
             }
         }
+    }
+}
+
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the innermost loops of every integrator")]
+fn scale<const D: usize>(stress: &mut Tensor<D>, share: f64) {
+    for component in stress.as_flattened_mut() {
+        *component *= share;
     }
 }
 
@@ -252,7 +284,7 @@ impl StressLaw {
         history: &mut History,
         strain: &Components,
     ) -> Option<Tangent> {
-        let Stress::Yields(update) = self.law.data().stress else { return None };
+        let Stress::Yields(update) = self.stress else { return None };
         Some(self.yielded(update, stress, history, strain))
     }
 

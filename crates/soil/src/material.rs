@@ -122,7 +122,7 @@ impl Material {
     #[inline]
     pub fn stress_law(&self) -> StressLaw {
         StressLaw {
-            law: self.law,
+            stress: self.law.data().stress,
             stiffness: self.stiffness(),
             virgin_share: 1.0 / self.stiffening(),
             strength: self.undrained_strength,

@@ -11,7 +11,7 @@ use crate::state::grid::Grid;
 use crate::state::nodes::{NodalSums, Support};
 use crate::state::points::Points;
 use crate::wide::{LANES, are_alike, some_mut, some_of, wide};
-use oedometer_problem::wave_speeds::drag_of_point;
+use oedometer_problem::wave_speeds::drags_of_points;
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::material::Material;
 use oedometer_soil::tensor::{Tensor, Vector, product_with_transpose};
@@ -307,9 +307,7 @@ impl<'a, const D: usize> Giving<'a, D> {
                     shares.storage[p] = shares.pores[p] / soil.water_bulk_modulus;
                 }
             }
-            for p in 0..N {
-                shares.drags[p] = drag_of_point(soil, resisting[p], ratios[p]);
-            }
+            shares.drags = drags_of_points(soil, &resisting, ratios);
         }
         // In memory point beside point: otherwise the compiler works point by point.
         if N > 1 { black_box(shares) } else { shares }
@@ -406,20 +404,20 @@ pub(crate) struct ToNodes<'a, const D: usize, const W: usize, G> {
     forces: &'a mut [[Vector<D>; 2]],
     /// The lowest of the nodes that the last points of a line gave to, and what each of them got.
     first: usize,
-    line: [Share<D>; W],
+    line: [Share; W],
     gives: PhantomData<G>,
 }
 
-/// What a node of a line gets.
+/// What a node of a line gets, each four side by side.
 #[derive(Clone, Copy)]
-struct Share<const D: usize> {
+struct Share {
     masses: [f64; 4],
-    momenta: [Vector<D>; 2],
-    forces: [Vector<D>; 2],
+    /// Momenta of both phases, forces on the mixture and on the water.
+    balances: [f64; 4],
 }
 
-impl<const D: usize> Share<D> {
-    const NOTHING: Self = Self { masses: [0.0; 4], momenta: [[0.0; D]; 2], forces: [[0.0; D]; 2] };
+impl Share {
+    const NOTHING: Self = Self { masses: [0.0; 4], balances: [0.0; 4] };
 }
 
 impl<'a, const D: usize, const W: usize, G: Gives> ToNodes<'a, D, W, G> {
@@ -479,6 +477,8 @@ impl<'a, const D: usize, const W: usize, G: Gives> ToNodes<'a, D, W, G> {
             self.close();
             (self.first, self.line) = (run.first, [Share::NOTHING; W]);
         }
+        let ([solid, water], [mixture, flow]) = (given.momenta, given.stresses[0]);
+        let balances = [solid[0], water[0], mixture[0], flow[0]];
         for k in 0..W {
             let (share, value, gradient) = (&mut self.line[k], run.values[k], run.gradients[k]);
             if G::MASSES {
@@ -486,15 +486,9 @@ impl<'a, const D: usize, const W: usize, G: Gives> ToNodes<'a, D, W, G> {
                     share.masses[i] += value * given.masses[i];
                 }
             }
-            for phase in 0..2 {
-                for d in 0..D {
-                    if G::MOMENTA {
-                        share.momenta[phase][d] += value * given.momenta[phase][d];
-                    }
-                    if G::FORCES {
-                        share.forces[phase][d] += gradient * given.stresses[d][phase][d];
-                    }
-                }
+            let along = [value, value, gradient, gradient];
+            for i in 0..4 {
+                share.balances[i] += along[i] * balances[i];
             }
         }
     }
@@ -518,9 +512,7 @@ impl<'a, const D: usize, const W: usize, G: Gives> ToNodes<'a, D, W, G> {
             let momenta = &mut self.momenta[self.first..][..W];
             for k in 0..W {
                 for phase in 0..2 {
-                    for d in 0..D {
-                        momenta[k][phase][d] += self.line[k].momenta[phase][d];
-                    }
+                    momenta[k][phase][0] += self.line[k].balances[phase];
                 }
             }
         }
@@ -528,9 +520,7 @@ impl<'a, const D: usize, const W: usize, G: Gives> ToNodes<'a, D, W, G> {
             let forces = &mut self.forces[self.first..][..W];
             for k in 0..W {
                 for phase in 0..2 {
-                    for d in 0..D {
-                        forces[k][phase][d] += self.line[k].forces[phase][d];
-                    }
+                    forces[k][phase][0] += self.line[k].balances[2 + phase];
                 }
             }
         }

@@ -43,6 +43,9 @@ impl<const D: usize> Trial<D> {
         let (inverse_deformation, volume_ratio) =
             (&mut points.inverse_deformation[..count], &mut points.volume_ratio[..count]);
         let (effective_stress, soil) = (&mut points.effective_stress[..count], &points.soil[..count]);
+        // Of the kinematics of a B-bar method only the volume goes the way of the water's, as in the explicit step. A domain
+        // that did so would keep its length where points move apart, and nothing would resist that (docs/methods.md).
+        let splits_motion = moves && !traces.is_empty();
         let mut has_changed = false;
         for point in 0..count {
             let mut gradient = stencils.of_point(point).gradient(&stride, &self.displacement);
@@ -68,9 +71,7 @@ impl<const D: usize> Trial<D> {
                 let before = &anchor_deformation[point];
                 let after = sum(before, &gradient);
                 let volume;
-                if trace.is_some() && moves {
-                    // Of the kinematics only the volume goes the way of the water's, as in the explicit step. A domain that did so
-                    // would keep its length where points move apart, and nothing would resist that (docs/methods.md).
+                if splits_motion {
                     moved = sum(before, &motion);
                     inverse_deformation[point] = inverse(&moved).0;
                     volume = inverse(&after).1;
@@ -89,7 +90,7 @@ impl<const D: usize> Trial<D> {
             let mut history = self.anchor.history.get(point).copied().unwrap_or_default();
             let law = &laws[usize::from(soil[point])];
             law.update(&mut stress, &mut history, &strain, || {
-                if trace.is_none() || !moves {
+                if !splits_motion {
                     return product(&deformation, &carried[point]);
                 }
                 let whole = product(&moved, &carried[point]);
