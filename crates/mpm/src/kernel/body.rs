@@ -128,6 +128,8 @@ pub struct Body<const D: usize> {
     pub site_values: Vec<f64>,
     /// The skeleton's volumetric rate at the points, 1/s, where the method is B-bar.
     pub dilation_rates: Vec<f64>,
+    /// Velocity gradients at the points by the method's strain, 1/s, while these are strained.
+    pub velocity_gradients: Vec<Tensor<D>>,
     /// Mixture that passed the surface since the start, `∫ v_s + n(v_w − v_s) dt`, m.
     pub surface_flux: f64,
 }
@@ -196,6 +198,7 @@ impl<const D: usize> Body<D> {
             support,
             site_values: vec![0.0; sites],
             dilation_rates: vec![0.0; if method.strain.is_bbar() { count } else { 0 }],
+            velocity_gradients: vec![[[0.0; D]; D]; count],
             surface_flux: 0.0,
             grid,
             points,

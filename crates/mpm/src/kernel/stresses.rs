@@ -3,11 +3,11 @@
 #![expect(clippy::inline_always, reason = "the innermost loops of the step")]
 
 use crate::kernel::body::Body;
-use crate::operators::stencil::{Stencils, with_stencils};
+use crate::operators::stencil::with_stencils;
 use crate::operators::strain_gradient::{CompositeRows, StrainOperator};
 use crate::state::grid::SIXTH;
 use crate::state::points::Points;
-use crate::wide::{LANES, are_alike, some_mut, wide};
+use crate::wide::{LANES, are_alike, some_mut, some_of, wide};
 use oedometer_problem::method::Configuration;
 use oedometer_soil::elementary;
 use oedometer_soil::law::{History, StrainIncrement, StressLaw};
@@ -46,6 +46,7 @@ impl<const D: usize> Body<D> {
         if self.method.strain.is_bbar() {
             self.recover_dilation_rates();
         }
+        self.take_velocity_gradients();
         let straining = Straining {
             laws: &self.stress_laws,
             dilation_rates: &self.dilation_rates,
@@ -55,32 +56,28 @@ impl<const D: usize> Body<D> {
             is_forced: self.actions.forcing.is_some(),
             dt,
         };
+        wide!(straining.strain_points(&mut self.points, &self.velocity_gradients));
+        self.turn_domains();
+    }
+
+    /// The method's gradients of the skeleton's velocity at the points.
+    fn take_velocity_gradients(&mut self) {
         let (stride, field) = (*self.grid.node_stride(), &self.nodes.solid_velocity[..]);
-        let (grid, cells, points) = (&self.grid, &self.cells, &mut self.points);
-        let count = points.len();
+        let gradients = &mut self.velocity_gradients[..];
         match &self.operators.strain {
             StrainOperator::Basis => with_stencils!(&self.operators.basis, stencils => {
-                wide!(straining.strain_by(points, stencils, stride, field));
+                wide!(stencils.take_gradients(&stride, field, gradients));
             }),
             // Of points that move each row is taken once: right where it is made.
-            StrainOperator::Composite(_) if self.configuration.moves_points() => wide!({
-                let rows = CompositeRows::new(grid, cells, count);
-                straining.strain_points(
-                    points,
-                    #[inline(always)]
-                    |point| rows.block(point).stencil().gradient(&stride, field),
-                    #[inline(always)]
-                    |first| rows.gradients(first, &stride, field),
-                );
-            }),
-            StrainOperator::Composite(stencils) => {
-                wide!(straining.strain_by(points, stencils, stride, field));
+            StrainOperator::Composite(_) if self.configuration.moves_points() => {
+                let rows = CompositeRows::new(&self.grid, &self.cells, gradients.len());
+                wide!(rows.take_gradients(&stride, field, gradients));
             }
+            StrainOperator::Composite(stencils) => wide!(stencils.take_gradients(&stride, field, gradients)),
             StrainOperator::BetweenEnds(stencils) => {
-                wide!(straining.strain_by(points, stencils, stride, field));
+                wide!(stencils.take_gradients(&stride, field, gradients));
             }
         }
-        self.turn_domains();
     }
 
     /// Volume ratio, exact in the logarithmic strain, and the domain where it follows.
@@ -106,41 +103,10 @@ impl<const D: usize> Body<D> {
 }
 
 impl Straining<'_> {
-    /// Strains points by the gradients of a nodal field with stencils that stand.
+    /// Strains points by their velocity gradients, those neighbours side by side that are of one soil.
     #[inline(always)]
-    fn strain_by<const D: usize, const W: usize>(
-        self,
-        points: &mut Points<D>,
-        stencils: &Stencils<D, W>,
-        stride: [usize; D],
-        field: &[Vector<D>],
-    ) {
-        let stencils = stencils.slices(points.len());
-        self.strain_points(
-            points,
-            #[inline(always)]
-            |point| stencils.of_point(point).gradient(&stride, field),
-            #[inline(always)]
-            |first| {
-                let mut gradients = [[[0.0; D]; D]; LANES];
-                for p in 0..LANES {
-                    gradients[p] = stencils.of_point(first + p).gradient(&stride, field);
-                }
-                Some(gradients)
-            },
-        );
-    }
-
-    /// Strains points by the velocity gradients of a step, side by side those neighbours of one soil that have gradients
-    /// side by side.
-    #[inline(always)]
-    fn strain_points<const D: usize>(
-        self,
-        points: &mut Points<D>,
-        gradient_of: impl Fn(usize) -> Tensor<D>,
-        gradients_from: impl Fn(usize) -> Option<[Tensor<D>; LANES]>,
-    ) {
-        let count = points.len();
+    fn strain_points<const D: usize>(self, points: &mut Points<D>, gradients: &[Tensor<D>]) {
+        let count = gradients.len();
         let mut strained = Strained {
             volume_ratio: &mut points.volume_ratio[..count],
             half_length: &mut points.half_length[..count],
@@ -152,12 +118,11 @@ impl Straining<'_> {
         let mut point = 0;
         while point < count {
             let law = &self.laws[usize::from(soil[point])];
-            let gradients = if are_alike(soil, point) { gradients_from(point) } else { None };
-            if let Some(gradients) = gradients {
-                self.strain(&mut strained, law, point, gradients);
+            if are_alike(soil, point) {
+                self.strain::<D, LANES>(&mut strained, law, point, *some_of(gradients, point));
                 point += LANES;
             } else {
-                self.strain(&mut strained, law, point, [gradient_of(point)]);
+                self.strain(&mut strained, law, point, [gradients[point]]);
                 point += 1;
             }
         }
@@ -409,7 +374,7 @@ mod tests {
             *stress = array::from_fn(|i| array::from_fn(|j| (point as f64 + 2.0 * (i + j) as f64).cos()));
         }
         let straining = Straining {
-            laws: &[soil.stress_law()],
+            laws: &[soil.stress_law(); 2],
             dilation_rates,
             following: Following { domain: true, inverse: true },
             deforms: true,
@@ -424,11 +389,15 @@ mod tests {
                 array::from_fn(|j| size(point) * (3.0 * point as f64 + (2 * i + j) as f64).sin())
             })
         };
-        let mut versions = [points.clone(), points];
-        straining
-            .strain_points(&mut versions[0], gradient, |first| Some(array::from_fn(|p| gradient(first + p))));
-        straining.strain_points(&mut versions[1], gradient, |_| None);
-        versions
+        let gradients: Vec<Tensor<D>> = (0..points.len()).map(gradient).collect();
+        // Soils that take turns are strained one by one.
+        let mut in_turn = points.clone();
+        in_turn.soil.iter_mut().step_by(2).for_each(|soil| *soil = 1);
+        [points, in_turn].map(|mut points| {
+            straining.strain_points(&mut points, &gradients);
+            points.soil.fill(0);
+            points
+        })
     }
 
     #[test]

@@ -179,6 +179,15 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         Stencil { first: &self.first[blocks.clone()], lines: &self.lines[blocks] }
     }
 
+    /// Gradients of a nodal vector field at all points, `[point][component][direction]`.
+    #[inline(always)]
+    pub fn take_gradients(&self, stride: &[usize; D], field: &[Vector<D>], gradients: &mut [Tensor<D>]) {
+        let stencils = self.slices(gradients.len());
+        for (point, gradient) in gradients.iter_mut().enumerate() {
+            *gradient = stencils.of_point(point).gradient(stride, field);
+        }
+    }
+
     /// Hands every run of every point to a function, with what the point gives.
     #[inline(always)]
     fn give<G>(&self, stride: &[usize; D], given: impl Fn(usize) -> G, mut add: impl FnMut(&Run<D, W>, &G)) {

@@ -10,7 +10,7 @@ use crate::operators::row::Row;
 use crate::operators::stencil::{Block, PointStencils, Stencils};
 use crate::state::cells::Cells;
 use crate::state::grid::{Grid, SIXTH, cell_below, power};
-use crate::wide::{LANES, wide};
+use crate::wide::{LANES, some_mut, wide};
 use oedometer_problem::method::StrainGradient;
 use oedometer_soil::tensor::{Tensor, Vector};
 use std::hint::black_box;
@@ -165,7 +165,7 @@ impl<'a, const D: usize> CompositeRows<'a, D> {
     /// Gradients of a nodal vector field, `[point][component][direction]`, at [`LANES`] neighbours from one on, side by side
     /// where all are in one cell; the same bits as by the block of each.
     #[inline(always)]
-    pub fn gradients(
+    fn gradients(
         &self,
         first: usize,
         stride: &[usize; D],
@@ -231,6 +231,23 @@ impl<'a, const D: usize> CompositeRows<'a, D> {
             }
         }
         Some(gradients)
+    }
+
+    /// Gradients of a nodal vector field at all points, `[point][component][direction]`.
+    #[inline(always)]
+    pub fn take_gradients(self, stride: &[usize; D], field: &[Vector<D>], gradients: &mut [Tensor<D>]) {
+        let mut point = 0;
+        while point < gradients.len() {
+            let together =
+                if point + LANES <= gradients.len() { self.gradients(point, stride, field) } else { None };
+            if let Some(together) = together {
+                *some_mut(gradients, point) = together;
+                point += LANES;
+            } else {
+                gradients[point] = self.block(point).stencil().gradient(stride, field);
+                point += 1;
+            }
+        }
     }
 }
 
