@@ -11,7 +11,7 @@ pub(crate) mod energy;
 mod forced_body;
 pub(crate) mod loaded_body;
 pub(crate) mod nodes_to_points;
-mod points_to_nodes;
+pub(crate) mod points_to_nodes;
 pub mod projection;
 pub mod rhythm;
 pub mod step;

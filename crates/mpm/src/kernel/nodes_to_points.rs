@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "the innermost loops of the step")]
 
 use crate::kernel::body::Body;
-use crate::kernel::points_to_nodes::{Given, Gives, Momenta, Nothing, ToNodes, scaled};
+use crate::kernel::points_to_nodes::{Given, Gives, ToNodes, scaled};
 use crate::operators::stencil::{Stencils, with_stencils};
 use crate::state::points::Points;
 use crate::wide::wide;
@@ -45,15 +45,11 @@ impl Motion {
 }
 
 impl<const D: usize> Body<D> {
-    /// Step 4: velocities and places of the points; in the same pass, where velocities are mapped back, the momenta of step
-    /// 5 that they give to the same nodes.
-    pub(crate) fn advance_points(&mut self, motion: Motion, maps_back: bool) {
+    /// Step 4: velocities and places of the points, and in the same pass what they give back to the same nodes: the momenta
+    /// of step 5, or nothing.
+    pub(crate) fn advance_points<G: Gives>(&mut self, motion: Motion) {
         let basis = std::mem::take(&mut self.operators.basis);
-        with_stencils!(&basis, stencils => if maps_back {
-            wide!(self.advance_points_by::<_, Momenta>(stencils, motion));
-        } else {
-            wide!(self.advance_points_by::<_, Nothing>(stencils, motion));
-        });
+        with_stencils!(&basis, stencils => wide!(self.advance_points_by::<_, G>(stencils, motion)));
         self.operators.basis = basis;
     }
 

@@ -6,7 +6,7 @@
 use crate::drag::{NodalBalance, NodalDrag};
 use crate::kernel::body::Body;
 use crate::kernel::nodes_to_points::Motion;
-use crate::kernel::points_to_nodes::{All, Forces};
+use crate::kernel::points_to_nodes::{All, Forces, Momenta, Nothing};
 use oedometer_problem::settings::Drag;
 use oedometer_problem::settings::ExplicitSettings;
 
@@ -55,10 +55,14 @@ impl<const D: usize> Body<D> {
         done(Step::NodalAccelerations);
         self.nodal_velocities(kick, dt);
         done(Step::NodalVelocities);
-        self.advance_points(Motion { kick, dt, flip: settings.flip }, settings.mapping_back);
-        done(Step::Points);
+        let motion = Motion { kick, dt, flip: settings.flip };
         if settings.mapping_back {
+            self.advance_points::<Momenta>(motion);
+            done(Step::Points);
             self.take_velocities();
+        } else {
+            self.advance_points::<Nothing>(motion);
+            done(Step::Points);
         }
         done(Step::MappingBack);
         self.update_effective_stress(dt);

@@ -18,6 +18,7 @@ use crate::integrate::double_point::sliver_nodes::SliverNodes;
 use crate::integrate::double_point::water_points::WaterPoints;
 use crate::kernel::Motion;
 use crate::kernel::body::Body;
+use crate::kernel::points_to_nodes::Nothing;
 use crate::operators::basis::Shapes;
 use crate::operators::recovery::RecoveryOperator;
 use crate::operators::stencil::PointStencils;
@@ -135,7 +136,7 @@ impl<const D: usize> DoublePoint<D> {
         self.slivers.follow_accelerations(&mut self.body.nodes);
         self.body.nodal_velocities(kick, dt); // step 3
         let motion = Motion { kick, dt, flip: settings.flip };
-        self.body.advance_points(motion, false); // step 4
+        self.body.advance_points::<Nothing>(motion); // step 4
         self.advance_water(motion);
         if settings.mapping_back {
             self.map_velocities(); // step 5
