@@ -51,7 +51,7 @@ const SCENES: Order = Order {
 };
 const MPM: Order = Order {
     root: "crates/mpm/src",
-    floors: "time_limit direct_solver state operators drag actions kernel integrate run discretise",
+    floors: "entries time_limit direct_solver state operators drag actions kernel integrate run discretise",
     circles: &[],
     licensed: &[],
 };

@@ -24,6 +24,7 @@ pub mod actions;
 mod direct_solver;
 pub mod discretise;
 mod drag;
+mod entries;
 pub mod integrate;
 pub mod kernel;
 pub mod operators;

@@ -8,6 +8,7 @@ use crate::actions::rigid_plate::RigidPlate;
 use crate::actions::self_weight::SelfWeight;
 use crate::actions::stress_slopes::StressPlanes;
 use crate::actions::surface_load::{LoadShape, LoadedSurface};
+use crate::entries::of_dimension;
 use crate::operators::Operators;
 use crate::operators::basis::Shapes;
 use crate::operators::corners::build_corners;
@@ -143,10 +144,28 @@ fn site_places<const D: usize>(method: Method, grid: &Grid<D>, points: usize) ->
     }
 }
 
+/// What other crates call of a body.
+struct Entries<const D: usize> {
+    new: fn(Discrete<D>) -> Body<D>,
+    build_operators: fn(&mut Body<D>),
+}
+
+static LINE: Entries<1> = Entries::TABLE;
+static PLANE: Entries<2> = Entries::TABLE;
+
+impl<const D: usize> Entries<D> {
+    const TABLE: Self = Self { new: Body::made_of, build_operators: Body::place_operators };
+}
+
 impl<const D: usize> Body<D> {
     /// Discretises a problem: builds operators and nodal masses on the initial configuration and
     /// maps the points' velocities to the nodes.
     pub fn new(problem: Discrete<D>) -> Self {
+        let entries: &Entries<D> = of_dimension(&LINE, &PLANE);
+        (entries.new)(problem)
+    }
+
+    fn made_of(problem: Discrete<D>) -> Self {
         let Discrete {
             grid,
             support,
@@ -210,7 +229,7 @@ impl<const D: usize> Body<D> {
         };
         body.displace(&initial_gradient);
         body.add_hydrostatic_pressure();
-        body.build_operators();
+        body.place_operators();
         // Where points move, other cells are cut at every step.
         if body.recovers_by_soils() && !configuration.moves_points() {
             body.share_stress_at_interfaces();
@@ -321,7 +340,7 @@ impl<const D: usize> Body<D> {
             self.cells.sum_volumes(&self.points, &self.soils);
             self.cells.average_deformation(&self.points);
         } else if self.configuration.moves_points() {
-            self.build_operators();
+            self.place_operators();
         }
     }
 
@@ -360,6 +379,11 @@ impl<const D: usize> Body<D> {
     /// Builds every operator of the method on the points' present places, and puts the load on
     /// the surface there.
     pub fn build_operators(&mut self) {
+        let entries: &Entries<D> = of_dimension(&LINE, &PLANE);
+        (entries.build_operators)(self);
+    }
+
+    fn place_operators(&mut self) {
         self.cells.locate(&self.grid, &self.points, &self.soils);
         if self.method.strain.is_composite() {
             self.cells.find_reached(&self.grid, &self.points);

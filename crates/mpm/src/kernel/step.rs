@@ -4,6 +4,7 @@
 //! the pass of step 1 sums the forces of step 2 as well, that of step 4 the momenta of step 5. Drag is part of step 2.
 
 use crate::drag::{NodalBalance, NodalDrag};
+use crate::entries::of_dimension;
 use crate::kernel::body::Body;
 use crate::kernel::nodes_to_points::Motion;
 use crate::kernel::points_to_nodes::{All, Forces, Momenta, Nothing};
@@ -29,6 +30,22 @@ pub enum Step {
     Pressure,
 }
 
+/// What other crates call of a step.
+struct Entries<const D: usize> {
+    kick_and_drift: fn(&mut Body<D>, f64, f64, &ExplicitSettings),
+    step_by_step: fn(&mut Body<D>, f64, f64, &ExplicitSettings, &mut dyn FnMut(Step)),
+}
+
+static LINE: Entries<1> = Entries::TABLE;
+static PLANE: Entries<2> = Entries::TABLE;
+
+impl<const D: usize> Entries<D> {
+    const TABLE: Self = Self {
+        kick_and_drift: |body, kick, dt, settings| body.take_step(kick, dt, settings, |_| ()),
+        step_by_step: |body, kick, dt, settings, done| body.take_step(kick, dt, settings, done),
+    };
+}
+
 impl<const D: usize> Body<D> {
     /// One explicit step of `dt` seconds by forward Euler.
     pub fn explicit_step(&mut self, dt: f64, settings: &ExplicitSettings) {
@@ -37,11 +54,11 @@ impl<const D: usize> Body<D> {
 
     /// One explicit step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
     pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
-        self.step_by_step(kick, dt, settings, |_| ());
+        let entries: &Entries<D> = of_dimension(&LINE, &PLANE);
+        (entries.kick_and_drift)(self, kick, dt, settings);
     }
 
     /// The same step; `done` is called after each of its steps, so that they can be timed.
-    #[inline]
     pub fn step_by_step(
         &mut self,
         kick: f64,
@@ -49,6 +66,11 @@ impl<const D: usize> Body<D> {
         settings: &ExplicitSettings,
         mut done: impl FnMut(Step),
     ) {
+        let entries: &Entries<D> = of_dimension(&LINE, &PLANE);
+        (entries.step_by_step)(self, kick, dt, settings, &mut done);
+    }
+
+    fn take_step(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings, mut done: impl FnMut(Step)) {
         self.reset_grid(settings);
         done(Step::Grid);
         self.nodal_accelerations(kick, settings.drag);

@@ -11,6 +11,7 @@ pub use crate::integrate::schedule::{Kernel, Observer, Schedule};
 pub use crate::integrate::{run_plan, schedule, stepper};
 
 use crate::direct_solver::Singular;
+use crate::entries::of_dimension;
 use crate::integrate::critical_step::predicted::GrowingMode;
 use crate::integrate::double_point::DoublePoint;
 use crate::integrate::explicit_stepper::{ExplicitStepper, PointSets};
@@ -29,6 +30,17 @@ use oedometer_problem::outcome::{Failure, FailureKind, Outcome};
 /// Solves a problem. Never panics and never loops for ever: what goes wrong ends the run with a
 /// named status, and what was finished before stays.
 pub fn run<const D: usize>(problem: Discrete<D>, schedule: &Schedule, observer: Observer<'_>) -> Outcome {
+    let Entry(solved) = of_dimension::<Entry<D>>(&LINE, &PLANE);
+    solved(problem, schedule, observer)
+}
+
+/// What other crates call of a run.
+struct Entry<const D: usize>(fn(Discrete<D>, &Schedule, Observer<'_>) -> Outcome);
+
+static LINE: Entry<1> = Entry(solved);
+static PLANE: Entry<2> = Entry(solved);
+
+fn solved<const D: usize>(problem: Discrete<D>, schedule: &Schedule, observer: Observer<'_>) -> Outcome {
     let plan = Plan::new(&problem, schedule);
     if let Some(growing) = &plan.growing {
         return Driver::new(stepper_of(Body::new(problem), &plan).as_mut(), &plan, observer)

@@ -3,6 +3,7 @@
 #![expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
 
 use crate::drag::{NodalBalance, NodalDrag};
+use crate::entries::of_dimension;
 use crate::integrate::assembled::constraints::{SlidingRows, TiedRows};
 use crate::integrate::assembled::operators::FrozenOperators;
 use crate::integrate::assembled::rows::{BandsWithin, REACH, RowStorage, Rows};
@@ -42,6 +43,21 @@ pub struct AssembledStep<const D: usize> {
     /// Rows that carry the load, with the force of all else and of the whole load.
     loaded: Vec<LoadedRow<D>>,
     pub(crate) state: FrozenState<D>,
+    entries: &'static Entries<D>,
+}
+
+/// What other crates call of it.
+#[derive(Debug)]
+struct Entries<const D: usize> {
+    new: fn(&Body<D>) -> AssembledStep<D>,
+    kick_and_drift: fn(&mut AssembledStep<D>, f64, f64, &ExplicitSettings),
+}
+
+static LINE: Entries<1> = Entries::TABLE;
+static PLANE: Entries<2> = Entries::TABLE;
+
+impl<const D: usize> Entries<D> {
+    const TABLE: Self = Self { new: AssembledStep::of, kick_and_drift: AssembledStep::take_step };
 }
 
 /// A row that carries a part of the load.
@@ -79,6 +95,11 @@ pub(crate) struct BlockConstants<const D: usize> {
 impl<const D: usize> AssembledStep<D> {
     /// Assembles the step of a body on its present operators, velocities and forces.
     pub fn new(body: &Body<D>) -> Self {
+        let entries: &Entries<D> = of_dimension(&LINE, &PLANE);
+        (entries.new)(body)
+    }
+
+    fn of(body: &Body<D>) -> Self {
         let mut body = body.clone();
         body.map_velocities();
         body.map_forces();
@@ -96,6 +117,7 @@ impl<const D: usize> AssembledStep<D> {
             settling: operators.settling,
             tied: operators.tied,
             sliding: operators.sliding,
+            entries: of_dimension(&LINE, &PLANE),
         };
         for row in 0..count {
             let node = step.nodes[row];
@@ -158,7 +180,12 @@ impl<const D: usize> AssembledStep<D> {
     }
 
     /// One step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
+    #[inline]
     pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
+        (self.entries.kick_and_drift)(self, kick, dt, settings);
+    }
+
+    fn take_step(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
         wide!(self.kick_and_drift_by_rows(kick, dt, settings));
     }
 

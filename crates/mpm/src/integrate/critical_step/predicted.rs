@@ -1,5 +1,6 @@
 //! The critical time step of a problem, predicted from its own operators.
 
+use crate::entries::of_dimension;
 use crate::integrate::assembled::step::AssembledStep;
 use crate::integrate::critical_step::known::{Limit, key_of, known_or};
 use crate::integrate::critical_step::spectral_radius;
@@ -110,8 +111,15 @@ pub fn predicted_critical_step<const D: usize>(problem: &Discrete<D>, settings: 
 
 /// The prediction of [`predicted_critical_step`].
 pub fn predict_for_run<const D: usize>(problem: &Discrete<D>, settings: &ExplicitSettings) -> Prediction<D> {
-    predict(problem, settings, FEW_CELLS)
+    let Entry(predicted) = of_dimension::<Entry<D>>(&LINE, &PLANE);
+    predicted(problem, settings)
 }
+
+/// What other crates call of the prediction.
+struct Entry<const D: usize>(fn(&Discrete<D>, &ExplicitSettings) -> Prediction<D>);
+
+static LINE: Entry<1> = Entry(|problem, settings| predict(problem, settings, FEW_CELLS));
+static PLANE: Entry<2> = Entry(|problem, settings| predict(problem, settings, FEW_CELLS));
 
 /// Largest growth per step of any mode of a whole problem in a plane under steps of a size, s; none in one dimension and
 /// where the problem is too large.

@@ -5,6 +5,7 @@
 //! extrapolated state has the extrapolated residual: no product with `K` is ever taken.
 
 use crate::direct_solver::system::{Factors, SystemMatrix};
+use crate::entries::of_dimension;
 use crate::integrate::implicit::linear_system::LinearSystem;
 use crate::integrate::implicit::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE, no_pivot};
 use crate::integrate::run_plan::Plan;
@@ -44,9 +45,27 @@ pub struct LinearStepper<const D: usize> {
     work: Work,
 }
 
+/// What other crates call of it.
+struct Entries<const D: usize> {
+    new: fn(Body<D>, &Plan<'_>) -> LinearStepper<D>,
+    advance: fn(&mut LinearStepper<D>, &EqualSteps, f64) -> Result<f64, StepFailure>,
+}
+
+static LINE: Entries<1> = Entries::TABLE;
+static PLANE: Entries<2> = Entries::TABLE;
+
+impl<const D: usize> Entries<D> {
+    const TABLE: Self = Self { new: LinearStepper::of, advance: LinearStepper::take_steps };
+}
+
 impl<const D: usize> LinearStepper<D> {
     /// A body at its start.
-    pub fn new(mut start: Body<D>, plan: &Plan<'_>) -> Self {
+    pub fn new(start: Body<D>, plan: &Plan<'_>) -> Self {
+        let entries: &Entries<D> = of_dimension(&LINE, &PLANE);
+        (entries.new)(start, plan)
+    }
+
+    fn of(mut start: Body<D>, plan: &Plan<'_>) -> Self {
         let system = LinearSystem::new(&mut start);
         let zero = vec![0.0; system.unknowns.count];
         Self {
@@ -140,11 +159,16 @@ impl<const D: usize> LinearStepper<D> {
         }
         Ok(error)
     }
+
+    fn take_steps(&mut self, steps: &EqualSteps, most_error: f64) -> Result<f64, StepFailure> {
+        (0..steps.count).try_fold(0.0, |_, _| self.step(steps.dt, most_error))
+    }
 }
 
 impl<const D: usize> Stepper for LinearStepper<D> {
     fn advance(&mut self, steps: &EqualSteps, most_error: f64) -> Result<f64, StepFailure> {
-        (0..steps.count).try_fold(0.0, |_, _| self.step(steps.dt, most_error))
+        let entries: &Entries<D> = of_dimension(&LINE, &PLANE);
+        (entries.advance)(self, steps, most_error)
     }
 
     fn settlement(&self) -> f64 {
