@@ -9,6 +9,7 @@ use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use crate::textbook::terms::terms_for;
 use oedometer_soil::elementary::{self, exp, hypot, j0, j1, ln, y0, y1};
+use std::sync::OnceLock;
 
 /// Study keys that the solution reads.
 pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, &["radius"]];
@@ -127,15 +128,19 @@ impl Solution for Barron {
 #[derive(Clone, Debug, PartialEq)]
 pub struct BarronFreeStrain {
     cylinder: Cylinder,
-    /// `β` and `1/(k² − 1)`.
-    modes: Vec<(f64, f64)>,
+    /// `β` and `1/(k² − 1)`, of those that a sum has needed.
+    modes: Vec<OnceLock<(f64, f64)>>,
 }
 
 impl BarronFreeStrain {
     pub fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
-        let cylinder = Cylinder::new(parameters)?;
-        let (inner, spacing) = (cylinder.inner, PI / cylinder.width);
-        let mode = |index: usize| {
+        Ok(Self { cylinder: Cylinder::new(parameters)?, modes: vec![OnceLock::new(); MOST_TERMS] })
+    }
+
+    /// A mode by its number.
+    fn mode(&self, index: usize) -> (f64, f64) {
+        let (inner, spacing) = (self.cylinder.inner, PI / self.cylinder.width);
+        let found = || {
             let sign = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
             let misfit = |root: f64| sign * (j0(root * inner) * y1(root) - y0(root * inner) * j1(root));
             let low = index as f64 * spacing;
@@ -143,14 +148,14 @@ impl BarronFreeStrain {
             let ratio = hypot(j0(root * inner), y0(root * inner)) / hypot(j1(root), y1(root));
             (root, 1.0 / ((ratio - 1.0) * (ratio + 1.0)))
         };
-        Ok(Self { cylinder, modes: (0..MOST_TERMS).map(mode).collect() })
+        *self.modes[index].get_or_init(found)
     }
 
     /// Sum over the modes of `term(β, 1/(k² − 1))` times the decay of the mode, smallest first.
     fn sum(&self, time_factor: f64, term: impl Fn(f64, f64) -> f64) -> Result<f64, ExactError> {
         let time = self.cylinder.time(time_factor)?;
-        let modes = &self.modes[..self.terms(time_factor)?.terms];
-        Ok(modes.iter().rev().map(|(root, share)| term(*root, *share) * exp(-root * root * time)).sum())
+        let modes = (0..self.terms(time_factor)?.terms).rev().map(|index| self.mode(index));
+        Ok(modes.map(|(root, share)| term(root, share) * exp(-root * root * time)).sum())
     }
 
     fn pressure(&self, time_factor: f64, radius: f64) -> Result<f64, ExactError> {

@@ -10,6 +10,7 @@ use crate::porous_soil::PorousSoil;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use crate::textbook::terms::terms_for;
 use oedometer_soil::elementary;
+use std::sync::OnceLock;
 
 /// Study keys that the solution reads.
 pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, BIOT_KEYS];
@@ -40,7 +41,8 @@ pub struct Cryer {
     coupling: f64,
     /// `3 − h`, without cancellation.
     slack: f64,
-    roots: Vec<f64>,
+    /// `β`, of those that a sum has needed.
+    roots: Vec<OnceLock<f64>>,
 }
 
 /// Sums over the roots.
@@ -60,15 +62,6 @@ impl Cryer {
         let squared = soil.alpha * soil.alpha;
         let share = 4.0 * soil.shear * squared / (3.0 * soil.bulk * soil.modulus * soil.storage);
         let coupling = 3.0 * share / (1.0 + share);
-        let root = |index: usize| {
-            // β = (i + 1)π − δ with tan δ = hβ/(β² − h).
-            let end = (index as f64 + 1.0) * PI;
-            let excess = |gap: f64| {
-                let root = end - gap;
-                gap - elementary::atan2(coupling * root, root * root - coupling)
-            };
-            end - bisected(0.0, PI, excess)
-        };
         Ok(Self {
             load: parameters.load,
             radius: parameters.height,
@@ -76,8 +69,22 @@ impl Cryer {
             start: parameters.load * soil.alpha / soil.bulk / (soil.fixed_storage + squared / soil.bulk),
             coupling,
             slack: 3.0 / (1.0 + share),
-            roots: (0..MOST_TERMS).map(root).collect(),
+            roots: vec![OnceLock::new(); MOST_TERMS],
         })
+    }
+
+    /// A root by its number.
+    fn root(&self, index: usize) -> f64 {
+        let found = || {
+            // β = (i + 1)π − δ with tan δ = hβ/(β² − h).
+            let end = (index as f64 + 1.0) * PI;
+            let excess = |gap: f64| {
+                let root = end - gap;
+                gap - elementary::atan2(self.coupling * root, root * root - self.coupling)
+            };
+            end - bisected(0.0, PI, excess)
+        };
+        *self.roots[index].get_or_init(found)
     }
 
     /// The sums at a distance from the centre over the radius.
@@ -91,7 +98,8 @@ impl Cryer {
         let terms = self.terms(time_factor)?.terms;
         let mut sums = Sums { pressure: 0.0, within: 0.0, mean: 0.0 };
         // The small ones first.
-        for (index, root) in self.roots[..terms].iter().enumerate().rev() {
+        for index in (0..terms).rev() {
+            let root = self.root(index);
             let square = root * root;
             let weight = 2.0 * elementary::exp(-square * time) / (square - h * self.slack);
             let sign = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
