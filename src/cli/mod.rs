@@ -19,7 +19,9 @@ use crate::cli::commands::{
 };
 use crate::cli::exit::Exit;
 use crate::cli::output::{say, written};
+use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -80,17 +82,26 @@ fn command() -> clap::Command {
     help::dressed(Arguments::command())
 }
 
+/// The arguments of a command line. Help texts are dressed where one is asked for, and not at every start.
+fn parsed(words: &[OsString]) -> Result<Arguments, clap::Error> {
+    Arguments::try_parse_from(words).or_else(|error| match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            Arguments::from_arg_matches(&command().try_get_matches_from(words)?)
+        }
+        _ => Err(error),
+    })
+}
+
 /// Parses the command line, runs the command, and turns its end into an exit code.
 pub fn main() -> ExitCode {
     ExitCode::from(main_with(std::env::args_os()))
 }
 
 /// Runs the command of a command line, the program's name first, and returns the exit code.
-pub fn main_with(words: impl IntoIterator<Item = std::ffi::OsString>) -> u8 {
+pub fn main_with(words: impl IntoIterator<Item = OsString>) -> u8 {
     let _at_work = crate::campaign::stop::begin();
-    let parsed =
-        command().try_get_matches_from(words).and_then(|matches| Arguments::from_arg_matches(&matches));
-    let arguments = match parsed {
+    let words: Vec<_> = words.into_iter().collect();
+    let arguments = match parsed(&words) {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version are requested: not a usage error.
