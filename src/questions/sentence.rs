@@ -9,9 +9,10 @@ use minijinja::{Environment, UndefinedBehavior, Value};
 use oedometer_convergence::Class;
 use oedometer_wording::{clock_time, count_of, duration, typed};
 use serde::{Deserialize, Serialize};
+use std::sync::LazyLock;
 
 /// An environment that knows the filters of all templates.
-fn environment() -> Environment<'static> {
+static ENVIRONMENT: LazyLock<Environment<'static>> = LazyLock::new(|| {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     environment.add_filter("amount", |value: f64, unit: String| number::with_unit(value, &unit));
@@ -47,14 +48,14 @@ fn environment() -> Environment<'static> {
     environment.add_filter("time_factor", number::time_factor);
     environment.add_filter("typed", typed);
     environment
-}
+});
 
 /// A template filled with facts: lightly marked, one line a paragraph.
 ///
 /// # Errors
 /// If the template needs what is no fact.
 pub fn filled(template: &str, facts: &impl Serialize) -> Result<String, RenderError> {
-    let text = environment().render_str(template, Value::from(Serde(facts)))?;
+    let text = ENVIRONMENT.render_str(template, Value::from(Serde(facts)))?;
     Ok(paragraphs(&text).join("\n\n"))
 }
 
