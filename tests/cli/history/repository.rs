@@ -248,7 +248,7 @@ fn attached(at: &Path) {
     fs::write(
         at.join("own.toml"),
         "title = \"Own\"\nscene = \"terzaghi\"\noutput = { time_factors = [0.1], references = [\"terzaghi-incompressible\"] }\n\
-         [[solver]]\nname = \"own\"\ncommand = [\"python3\", \"good.py\", \"{case}\", \"{out}\"]\n\
+         [[solver]]\nname = \"own\"\ncommand = [\"python3\", \"-I\", \"-S\", \"good.py\", \"{case}\", \"{out}\"]\n\
          result = \"{out}/result.csv\"\nmapping = \"nodes.toml\"\ntimeout = 60.0\n\
          [[sweep]]\nmethod = [\"own\"]\ncells = [8, 16, 32]\n",
     )
@@ -261,16 +261,16 @@ fn two_commands_of_an_attached_solver_are_compared_in_rounds() {
     let at = folder.path();
     attached(at);
     let compare = |b: &str, more: &[&str]| {
-        let a = "python3 good.py {case} {out}";
+        let a = "python3 -I -S good.py {case} {out}";
         call(
             at,
             &[&["compare", "--commands", a, b, "own.toml", "--allow-solvers", "--rounds", "2"], more]
                 .concat(),
         )
     };
-    let same = compare("python3 good.py {case} {out}", &[]);
+    let same = compare("python3 -I -S good.py {case} {out}", &[]);
     assert_eq!(same.code, 0, "{}{}", same.out, same.err);
-    let worse = compare("python3 worse.py {case} {out}", &["--format", "json"]);
+    let worse = compare("python3 -I -S worse.py {case} {out}", &["--format", "json"]);
     assert_eq!(worse.code, 1, "{}{}", worse.out, worse.err);
     let found: serde_json::Value = serde_json::from_str(&worse.out).expect("JSON");
     assert_eq!((&found[0]["accuracy"], &found[0]["cost"]), (&"regressed".into(), &"same".into()));
@@ -285,7 +285,7 @@ fn two_commands_of_an_attached_solver_are_compared_in_rounds() {
         let [least, most] = ["least", "most"].map(|name| found[0]["seconds"][side][name].as_f64());
         assert!(least.expect("timed") <= most.expect("timed"), "{found:#}");
     }
-    let crash = compare("python3 crash.py {case} {out}", &[]);
+    let crash = compare("python3 -I -S crash.py {case} {out}", &[]);
     assert_eq!(crash.code, 1, "{}{}", crash.out, crash.err);
     for (arguments, told) in [
         (&["compare", "--commands", "a", "b"][..], "takes one study file"),
