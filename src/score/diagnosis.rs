@@ -15,29 +15,20 @@ mod world;
 use crate::import::SampledState;
 use crate::import::mapping::Mapping;
 use crate::score::coverage::uneven_top;
-use columns::{Column, Field, Given, Output};
+use columns::{CLEAN, Column, Field, Given, MOST, right_beside};
 use oedometer_exact::row::Axis;
 use oedometer_exact::{ColumnParameters, ReferenceKind};
 use oedometer_wording::rounded;
 use readings::Reading;
-use search::{Explanation, Mistake};
+use search::Explanation;
 use world::World;
 
-/// Samples of an output that are looked at for patterns, and in the trials of hypotheses, where there are more than twice
-/// as many.
-const SAMPLES: [usize; 2] = [5000, 16];
 /// Relative distance of times that stand for one.
 const SAME_TIME: f64 = 1e-6;
 /// Words of a sentence about several runs.
 pub const SEVERAL_RUNS: &str = "runs in one file";
 /// Words of a sentence about the place of a residual.
 const NO_MISTAKE: &str = "no known mistake explains it";
-/// Residual from which on one that nothing explains is told.
-const TOLD: f64 = 0.1;
-/// Error that an output at a time of its own may leave.
-const AT_ITS_TIME: f64 = 0.02;
-/// Error of an output that is right where others are wrong: at least, at most, and its share of the largest.
-const ELSEWHERE: [f64; 3] = [1e-3, 0.03, 0.1];
 
 /// Sentences on what seems to be wrong with the numbers of a result, compared with a reference.
 pub fn diagnosis(
@@ -46,11 +37,16 @@ pub fn diagnosis(
     states: &[SampledState],
     mapping: &Mapping,
 ) -> Vec<String> {
-    let scene = Scene { own: World::own(reference, parameters), mapping };
-    let mut told = match &runs(states)[..] {
-        [outputs] => scene.told(outputs, None),
-        runs => vec![scene.told_of_runs(runs)],
+    let own = World::own(reference, parameters);
+    let of_run = |states: &Vec<&SampledState>| {
+        Given::of(&own, mapping, states).map_or(Vec::new(), |given| match step_numbers(states, &given) {
+            Some(numbered) => vec![numbered],
+            None => told_of(&given, false),
+        })
     };
+    let runs = runs(states);
+    let mut told =
+        if let [run] = &runs[..] { of_run(run) } else { vec![told_of_runs(runs.iter().map(of_run))] };
     let is_over_depth = reference.row().axis == Axis::OverDepth;
     if let Some(uneven) = uneven_top(parameters, states).filter(|_| is_over_depth) {
         told.retain(|told| !told.contains(NO_MISTAKE));
@@ -59,167 +55,129 @@ pub fn diagnosis(
     told
 }
 
-/// A scene as it is, with the mapping of the files that are held against it.
-struct Scene<'a> {
-    own: World,
-    mapping: &'a Mapping,
-}
-
 /// The outputs of every run in a file: where two stand at one time with other values, the later one is of the next run.
-fn runs(states: &[SampledState]) -> Vec<Vec<Output<'_>>> {
-    let mut runs: Vec<Vec<Output<'_>>> = vec![Vec::new()];
-    let mut rank = 0;
-    for (place, state) in states.iter().enumerate() {
-        let before = place.checked_sub(1).map(|before| &states[before]);
-        let is_again =
-            |before: &&SampledState| (state.time - before.time).abs() <= SAME_TIME * state.time.abs();
-        let again = before.filter(is_again);
-        if again.is_some_and(|before| SampledState { time: state.time, ..before.clone() } == *state) {
-            continue;
-        }
-        rank = if again.is_some() { rank + 1 } else { 0 };
-        if rank == runs.len() {
-            runs.push(Vec::new());
-        }
-        let before = runs[rank].last().map_or(0.0, |output: &Output<'_>| output.state.time);
-        runs[rank].push(Output { state, before });
+fn runs(states: &[SampledState]) -> Vec<Vec<&SampledState>> {
+    let mut runs: Vec<Vec<&SampledState>> = vec![Vec::new()];
+    let is_again = |a: &SampledState, b: &SampledState| (b.time - a.time).abs() <= SAME_TIME * b.time.abs();
+    for at_one_time in states.chunk_by(is_again) {
+        let mut different: Vec<&SampledState> = at_one_time.iter().collect();
+        different.dedup_by(|b, a| SampledState { time: b.time, ..a.clone() } == **b);
+        runs.resize(runs.len().max(different.len()), Vec::new());
+        runs.iter_mut().zip(different).for_each(|(run, state)| run.push(state));
     }
     runs
 }
 
-impl<'a> Scene<'a> {
-    /// A sentence on several runs in one file.
-    fn told_of_runs(&self, runs: &[Vec<Output<'a>>]) -> String {
-        let of = |(place, outputs): (usize, &Vec<Output<'a>>)| match self.told(outputs, None).join("; ") {
-            told if told.is_empty() => format!("run {} is right", place + 1),
-            told => format!("in run {} {told}", place + 1),
-        };
-        let told: Vec<String> = runs.iter().enumerate().map(of).collect();
-        let [count, told] = [runs.len().to_string(), told.join("; ")];
-        format!(
-            "there are {count} {SEVERAL_RUNS}, with other values at the same times: {told}: was a second run appended?"
-        )
-    }
+/// A sentence on several runs in one file, of what is told of each.
+fn told_of_runs(told: impl ExactSizeIterator<Item = Vec<String>>) -> String {
+    let count = told.len();
+    let of_run = |(place, told): (usize, Vec<String>)| match told.join("; ") {
+        told if told.is_empty() => format!("run {} is right", place + 1),
+        told => format!("in run {} {told}", place + 1),
+    };
+    let told = told.enumerate().map(of_run).collect::<Vec<_>>().join("; ");
+    format!(
+        "there are {count} {SEVERAL_RUNS}, with other values at the same times: {told}: was a second run appended?"
+    )
+}
 
-    /// What seems wrong at the outputs of a run, or with some columns at some of them.
-    fn told(&self, outputs: &[Output<'a>], some: Option<&[Field]>) -> Vec<String> {
-        let given = |most: usize| Given::of(&self.own, self.mapping, outputs, most);
-        let (Some(mut whole), Some(mut thin)) = (given(SAMPLES[0]), given(SAMPLES[1])) else {
-            return Vec::new();
-        };
-        whole
-            .columns
-            .retain(|column| column.is_right() || some.is_none_or(|some| some.contains(&column.field)));
-        thin.judge_as(&whole);
-        // Structure first.
-        let are_all_wrong = !whole.columns.iter().any(Column::is_right);
-        let content = |column: &Column| patterns::content(column, &whole).filter(|_| some.is_none());
-        let alone = match &whole.columns[..] {
-            [column] if column.is_zero() => content(column),
-            _ if are_all_wrong && some.is_none() => self.step_numbers(outputs),
-            _ => None,
-        };
-        if let Some(told) = alone {
-            return vec![told];
-        }
-        let found = search::explanation(&thin, &whole, some.is_none());
-        let is_world = found.as_ref().is_some_and(|found| found.of.count > 0);
-        let mut told = found.as_ref().map_or(Vec::new(), |found| sentences(found, &thin));
-        let is_open = |column: &&Column| match &found {
-            Some(found) => found.leaves(column.field, &thin),
-            None => !column.is_right(),
-        };
-        let open: Vec<&Column> = whole.columns.iter().filter(is_open).collect();
-        let apart = || self.told_apart(&open, &whole, outputs);
-        if let Some(apart) = (some.is_none() && !is_world).then(apart).flatten() {
-            told.push(apart);
-            return told;
-        }
-        for column in open.into_iter().filter(|column| column.residual > column.mesh) {
-            let unlike = || patterns::unlike(column, &whole).filter(|_| some.is_none());
-            told.extend(content(column).or_else(unlike).or_else(|| match is_world {
-                _ if column.residual <= TOLD => None,
-                true => {
-                    Some(format!("your {} does not match that: it is wrong in its own right", column.name))
-                }
-                false => patterns::place(column, &whole),
-            }));
-        }
-        told
+/// What seems wrong with a run, or with some of its outputs.
+fn told_of(given: &Given<'_>, is_part: bool) -> Vec<String> {
+    let content = |column: &Column| patterns::unexplained(column, given).filter(|_| !is_part);
+    if let [column] = &given.columns[..]
+        && column.is_zero()
+    {
+        return Vec::from_iter(content(column));
     }
+    let found = given.thin().and_then(|thin| search::explanation(&thin, given, is_part));
+    let is_world = found.as_ref().is_some_and(|found| found.of.count > 0);
+    let mut told = found.as_ref().map_or(Vec::new(), |found| sentences(found, given));
+    let is_open = |(place, column): &(usize, &Column)| match &found {
+        Some(found) => found.readings[*place].is_none(),
+        None => !column.is_right(),
+    };
+    let open = given.columns.iter().enumerate().filter(is_open).map(|(_, column)| column);
+    let open: Vec<&Column> = open.collect();
+    if !is_part
+        && !is_world
+        && let Some(apart) = told_apart(&open, given)
+    {
+        told.push(apart);
+        return told;
+    }
+    for column in open.into_iter().filter(|column| column.residual > column.mesh) {
+        told.extend(content(column).or_else(|| match is_world {
+            _ if column.residual <= MOST => None,
+            true => Some(format!("your {} does not match that: it is wrong in its own right", column.name)),
+            false => patterns::place(column, given),
+        }));
+    }
+    told
+}
 
-    /// A sentence on times that count outputs, with the time factors that the columns are at.
-    fn step_numbers(&self, outputs: &[Output<'a>]) -> Option<String> {
-        let parameters = &self.own.parameters;
-        let seconds = self.mapping.units.time.seconds(1.0, parameters.time(1.0));
-        let first = (outputs.first()?.state.time / seconds).round();
-        let is_counted = |(place, output): (usize, &Output<'a>)| {
-            (output.state.time / seconds - first - place as f64).abs() < 1e-6
-        };
-        if outputs.len() < 3 || first > 1.0 || !outputs.iter().enumerate().all(is_counted) {
-            return None;
-        }
-        let own_time = |output: &Output<'a>| {
-            let given = Given::of(&self.own, self.mapping, std::slice::from_ref(output), SAMPLES[1])?;
-            let (time, _) = search::one_time(&given).filter(|(_, left)| *left <= AT_ITS_TIME)?;
-            Some(digits(parameters.time_factor(time)))
-        };
-        let times: Option<Vec<String>> = outputs.iter().map(own_time).collect();
-        let [second, third] = [first + 1.0, first + 2.0];
-        Some(format!(
-            "your times count outputs ({first}, {second}, {third}, …): are they step numbers instead of times? At T_v = {} all \
-             matches the exact solution",
-            times?.join(", ")
-        ))
+/// A sentence on times that count outputs, with the time factors that the columns are at.
+fn step_numbers(states: &[&SampledState], given: &Given<'_>) -> Option<String> {
+    let Given { own, mapping, columns, .. } = given;
+    let seconds = mapping.units.time.seconds(1.0, own.parameters.time(1.0));
+    let first = (states.first()?.time / seconds).round();
+    let is_counted =
+        |(place, state): (usize, &&SampledState)| (state.time / seconds - first - place as f64).abs() < 1e-6;
+    let are_wrong = !columns.iter().any(|column| column.is_right() || column.is_zero());
+    if states.len() < 3 || first > 1.0 || !are_wrong || !states.iter().enumerate().all(is_counted) {
+        return None;
     }
+    let own_time = |state: &&SampledState| {
+        let (time, left) = search::one_time(&Given::of(own, mapping, &[state])?.thin()?)?;
+        (left <= CLEAN).then(|| digits(own.parameters.time_factor(time)))
+    };
+    let times: Option<Vec<String>> = states.iter().map(own_time).collect();
+    let [second, third] = [first + 1.0, first + 2.0];
+    Some(format!(
+        "your times count outputs ({first}, {second}, {third}, …): are they step numbers instead of times? At T_v = {} all \
+         matches the exact solution",
+        times?.join(", ")
+    ))
+}
 
-    /// A sentence on columns that are wrong at some of the outputs alone, with what explains these.
-    fn told_apart(&self, columns: &[&Column], given: &Given<'_>, outputs: &[Output<'a>]) -> Option<String> {
-        let misfit = |output: usize| {
-            let of = columns.iter().filter(|column| column.outputs.contains(&output));
-            let of = of
-                .map(|column| column.misfit(&column.itself(&column.exact(&given.exact)), 1.0, Some(output)));
-            of.fold(0.0, f64::max)
-        };
-        let misfits: Vec<f64> = (0..given.times.len()).map(misfit).collect();
-        let worst = misfits.iter().copied().fold(0.0, f64::max);
-        let [least, most, share] = ELSEWHERE;
-        let [right, wrong] = [true, false].map(|is_right| {
-            let is_so = |misfit: f64| (misfit <= (share * worst).clamp(least, most)) == is_right;
-            let all = given.times.iter().zip(&misfits).filter(|(_, misfit)| is_so(**misfit));
-            all.map(|(time, _)| *time).collect::<Vec<f64>>()
-        });
-        let is_wrong = |output: &&Output<'a>| wrong.contains(&output.state.time);
-        let others: Vec<Output<'a>> = outputs.iter().filter(is_wrong).copied().collect();
-        if right.is_empty() || others.is_empty() {
-            return None;
-        }
-        let fields: Vec<Field> = columns.iter().map(|column| column.field).collect();
-        let there = match self.told(&others, Some(&fields)).join("; ") {
-            there if there.is_empty() => there,
-            there if there.contains("× the time") => {
-                format!(": there {there}; are these outputs of another run?")
-            }
-            there => format!(": there {there}"),
-        };
-        let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
-        let (who, are) = (who(&names, "your"), if names.len() == 1 { "is" } else { "are" });
-        let [right, wrong] = [right, wrong].map(|times| listed(times.into_iter()));
-        let told = format!("{who} {are} right at t = {right} s and wrong only at t = {wrong} s{there}");
-        (worst > TOLD || !there.is_empty()).then_some(told)
+/// A sentence on columns that are wrong at some of the outputs alone, with what explains these.
+fn told_apart(columns: &[&Column], given: &Given<'_>) -> Option<String> {
+    let misfit = |output: usize| {
+        let of = columns.iter().filter(|column| column.outputs.contains(&output));
+        let of = of.map(|column| column.misfit(&column.itself(&column.exact), 1.0, Some(output)));
+        of.fold(0.0, f64::max)
+    };
+    let misfits: Vec<f64> = (0..given.times.len()).map(misfit).collect();
+    let worst = misfits.iter().copied().fold(0.0, f64::max);
+    let is_right = |output: &usize| misfits[*output] <= right_beside(worst);
+    let (right, wrong): (Vec<usize>, Vec<usize>) = (0..misfits.len()).partition(is_right);
+    if right.is_empty() || wrong.is_empty() {
+        return None;
     }
+    let fields: Vec<Field> = columns.iter().map(|column| column.field).collect();
+    let there = told_of(&given.at_outputs(&wrong, &fields)?, true).join("; ");
+    if worst <= MOST && there.is_empty() {
+        return None;
+    }
+    let begin = if there.is_empty() { "" } else { ": there " };
+    let end = if there.contains("× the time") { "; are these outputs of another run?" } else { "" };
+    let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
+    let (who, are) = (who(&names, "your"), if names.len() == 1 { "is" } else { "are" });
+    let [right, wrong] =
+        [right, wrong].map(|outputs| listed(outputs.into_iter().map(|output| given.times[output])));
+    Some(format!("{who} {are} right at t = {right} s and wrong only at t = {wrong} s{begin}{there}{end}"))
 }
 
 /// The sentences of an explanation, one for all columns that are read alike; of what they share first, its questions once.
 fn sentences(found: &Explanation, given: &Given<'_>) -> Vec<String> {
-    let mut groups: Vec<(&Mistake, Vec<&str>)> = Vec::new();
+    let mut groups: Vec<(&Reading, Vec<&str>)> = Vec::new();
     for (reading, column) in found.readings.iter().zip(&given.columns) {
-        // A column that is right takes part in what is said of all.
-        let is_seen = found.of.count > 0 && column.residual > 0.0;
-        let is_told = |reading: &&Reading| reading.of.count > 0 || is_seen;
-        let Some(Reading { of, .. }) = reading.as_ref().filter(is_told) else {
+        let Some(of) = reading else {
             continue;
         };
+        // A column that is right takes part in what is said of all.
+        if of.count == 0 && (found.of.count == 0 || column.residual == 0.0) {
+            continue;
+        }
         match groups.iter_mut().find(|(other, _)| (&other.said, &other.asked) == (&of.said, &of.asked)) {
             Some((_, columns)) => columns.push(column.name),
             None => groups.push((of, vec![column.name])),
@@ -228,7 +186,7 @@ fn sentences(found: &Explanation, given: &Given<'_>) -> Vec<String> {
     groups.sort_by_key(|(of, _)| of.count);
     let shared = [&found.of.asked[..], &[]];
     let alternatives = [&found.alternatives[..], &[]];
-    let sentence = |(place, (of, columns)): (usize, (&Mistake, Vec<&str>))| {
+    let sentence = |(place, (of, columns)): (usize, (&Reading, Vec<&str>))| {
         let place = place.min(1);
         let asked = [&of.asked[..], shared[place]].concat().join(", and ");
         let asked = [&[asked][..], alternatives[place]].concat().join(", or ");

@@ -6,10 +6,12 @@ use crate::import::SampledState;
 use crate::import::mapping::Mapping;
 use crate::score::coverage::lines;
 use oedometer_soil::elementary::powi;
-use std::borrow::Cow;
 
 /// Number of outputs that are examined, spread over all of them.
 const OUTPUTS: usize = 12;
+/// Samples of an output that are looked at for patterns, and in the trials of hypotheses, where there are more than twice
+/// as many.
+const SAMPLES: [usize; 2] = [5000, 16];
 /// Exact values below this share of the load, or of the final settlement, are round-off and show nothing.
 const VANISHED: f64 = 1e-6;
 /// Values above this share show something, whatever the exact ones are.
@@ -20,6 +22,17 @@ const MESH: f64 = 0.3;
 const SHARE_OF_OUTPUT: f64 = 0.05;
 /// A column with at most this residual is right, and never explained.
 const RIGHT: f64 = 1e-3;
+/// Share of its residual that a correction may leave; where the mesh explains it, or values are few; and at most.
+const SHARE: f64 = 0.1;
+pub const CLEAN: f64 = 0.02;
+pub const FEW: usize = 8;
+pub const MOST: f64 = 0.1;
+/// Multiple of the residual of a right column that a correction of another may leave.
+const AS_OTHERS: f64 = 30.0;
+/// Largest residual of what is right beside something that is wrong.
+const MOST_BESIDE: f64 = 0.03;
+/// Multiple of the limit of a column that an output may have.
+const OF_OUTPUT: f64 = 3.0;
 
 /// What a column of a result is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,6 +48,9 @@ pub enum Field {
 }
 
 impl Field {
+    pub const ALL: [Self; 5] =
+        [Self::Pressure, Self::EffectiveStress, Self::Up, Self::Along, Self::Settlement];
+
     /// Whether it is a stress, Pa; else it is a length, m.
     pub fn is_stress(self) -> bool {
         matches!(self, Self::Pressure | Self::EffectiveStress)
@@ -51,7 +67,7 @@ pub struct Held {
 }
 
 /// A column: its values at all samples of all outputs that have it, one after the other.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Column {
     pub field: Field,
     /// Its name for the user.
@@ -61,6 +77,8 @@ pub struct Column {
     /// Factors that it may have.
     pub scales: Vec<Scale>,
     pub values: Vec<f64>,
+    /// What the scene's own solution predicts for them.
+    pub exact: Vec<f64>,
     /// Where its values stand in [`Fields`].
     at: Vec<usize>,
     /// Initial height of each value, m.
@@ -69,27 +87,40 @@ pub struct Column {
     pub distances: Vec<f64>,
     /// Number of the output of each value.
     pub outputs: Vec<usize>,
-    /// Its residual against the scene's own solution.
+    /// Its residual against the scene's own solution, and the error that its mesh explains.
     pub residual: f64,
-    /// Error that its mesh explains.
     pub mesh: f64,
+    /// What a correction may leave.
+    pub limit: f64,
+    /// Whether another column is right.
+    pub is_other_right: bool,
 }
 
 impl Column {
-    /// Root of the mean square of a list of this column's length, at an output or at all.
-    pub fn size(&self, values: &[f64], output: Option<usize>) -> f64 {
+    /// The mean product of two lists of this column's length over its scale, at an output or at all.
+    fn product(&self, a: &[f64], b: &[f64], output: Option<usize>) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0_f64);
-        for (value, of) in values.iter().zip(&self.outputs) {
+        for ((a, b), of) in a.iter().zip(b).zip(&self.outputs) {
             if output.is_none_or(|output| output == *of) {
-                sum += powi(value / self.scale, 2);
+                sum += a / self.scale * (b / self.scale);
                 count += 1.0;
             }
         }
-        self.scale * (sum / count.max(1.0)).sqrt()
+        sum / count.max(1.0)
+    }
+
+    /// Root of the mean square of a list, at an output or at all.
+    pub fn size(&self, values: &[f64], output: Option<usize>) -> f64 {
+        self.scale * self.product(values, values, output).sqrt()
+    }
+
+    /// The factor of a list that fits another one best, at an output or at all.
+    pub fn factor(&self, values: &[f64], of: &[f64], output: Option<usize>) -> f64 {
+        self.product(values, of, output) / self.product(of, of, output)
     }
 
     /// The values that a prediction has for this column; those of the file where it may have either.
-    pub fn exact(&self, predicted: &Fields) -> Vec<f64> {
+    pub fn of_itself(&self, predicted: &Fields) -> Vec<f64> {
         let of_file = |(exact, value): (f64, &f64)| if exact.is_nan() { *value } else { exact };
         self.of_field(predicted, self.field).into_iter().zip(&self.values).map(of_file).collect()
     }
@@ -124,16 +155,11 @@ impl Column {
         self.size(&self.beyond(&held.values, factor), output) / (factor.abs() * size)
     }
 
-    /// The factor of a list that fits another one best, at an output or at all.
-    pub fn factor(&self, values: &[f64], of: &[f64], output: Option<usize>) -> f64 {
-        let (mut both, mut square) = (0.0, 0.0);
-        for ((value, of), at) in values.iter().zip(of).zip(&self.outputs) {
-            if output.is_none_or(|output| output == *at) {
-                both += value / self.scale * (of / self.scale);
-                square += powi(of / self.scale, 2);
-            }
-        }
-        both / square
+    /// The error that a hypothesis with a factor of the file leaves, if that is little in all and at every output.
+    pub fn accepts(&self, held: &Held, factor: f64) -> Option<f64> {
+        let (left, limit) = (self.misfit(held, factor, None), self.limit);
+        let is_even = |output: usize| self.misfit(held, factor, Some(output)) <= OF_OUTPUT * limit;
+        (left <= limit && self.own_outputs().into_iter().all(is_even)).then_some(left)
     }
 
     /// Whether all values are 0.
@@ -161,21 +187,67 @@ impl Column {
 
     /// Whether there are several outputs and all have the same values.
     pub fn stands_still(&self) -> bool {
-        let all: Vec<Vec<f64>> =
-            self.own_outputs().into_iter().map(|output| self.at_output(output)).collect();
-        all.len() > 1 && all.iter().all(|values| *values == all[0])
+        let outputs = self.own_outputs();
+        let first = self.at_output(outputs[0]);
+        outputs.len() > 1 && outputs.into_iter().all(|output| self.at_output(output) == first)
     }
 }
 
-/// A state of a result, with the time of the one before.
-#[derive(Clone, Copy)]
-pub struct Output<'a> {
-    pub state: &'a SampledState,
-    /// Time of the output before, s; 0 of the first.
-    pub before: f64,
+/// The samples of an output at places of one kind.
+#[derive(Clone)]
+pub struct Set {
+    pub output: usize,
+    pub heights: Vec<f64>,
+    /// Empty in a column.
+    pub distances: Vec<f64>,
+    /// The values of each [`Field`] in its order.
+    values: Fields,
+    /// Whether these are only some of the samples.
+    is_picked: bool,
+}
+
+impl Set {
+    /// The samples of a state at its places, with those beside them, and its settlement at the surface.
+    fn all_of(output: usize, state: &SampledState, height: f64) -> Vec<Self> {
+        let of = |state: &SampledState| {
+            let SampledState { pressure, effective_stress, displacement, horizontal_displacement, .. } =
+                state.clone();
+            let values = [pressure, effective_stress, displacement, horizontal_displacement, Vec::new()];
+            let (heights, distances) = (state.initial_height.clone(), state.initial_distance.clone());
+            Self { output, heights, distances, values, is_picked: false }
+        };
+        let beside = state.beside.iter().map(|beside| &beside.state);
+        let mut all: Vec<Self> = std::iter::once(state).chain(beside).map(of).collect();
+        if let Some(up) = state.surface_displacement {
+            let mut surface = of(&SampledState { initial_height: vec![height], ..SampledState::default() });
+            surface.values[Field::Settlement as usize] = vec![-up];
+            all.push(surface);
+        }
+        all
+    }
+
+    /// Some of the samples, spread over all of them without a period: a mistake is in all samples, and every trial evaluates
+    /// the exact fields again.
+    fn thinned(&self, most: usize) -> Self {
+        let all = self.heights.len();
+        if all <= 2 * most {
+            return self.clone();
+        }
+        // One of each of as many equal parts, at a place in it that a multiple of the golden ratio gives.
+        let place = |part: usize| part * all / most + (part.wrapping_mul(0x9e37_79b9) >> 16) % (all / most);
+        let of = |list: &Vec<f64>| (0..most).filter_map(|part| list.get(place(part)).copied()).collect();
+        Self {
+            output: self.output,
+            heights: of(&self.heights),
+            distances: of(&self.distances),
+            values: self.values.each_ref().map(of),
+            is_picked: true,
+        }
+    }
 }
 
 /// A result with the scene that it is held against.
+#[derive(Clone)]
 pub struct Given<'a> {
     /// The scene as it is.
     pub own: World,
@@ -183,92 +255,107 @@ pub struct Given<'a> {
     /// Times of the outputs, and of those before them, s.
     pub times: Vec<f64>,
     pub before: Vec<f64>,
-    /// Sets of places with the number of their output.
-    pub sets: Vec<(usize, Cow<'a, SampledState>)>,
+    pub sets: Vec<Set>,
     pub columns: Vec<Column>,
-    /// Whether these are only some of the samples.
-    pub are_picked: bool,
-    /// What the scene's own solution predicts.
-    pub exact: Fields,
 }
 
 impl<'a> Given<'a> {
-    /// The columns of some of the outputs that show something, at most so many samples of each; `None` where the scene has
-    /// no solution at these times.
-    pub fn of(own: &World, mapping: &'a Mapping, outputs: &[Output<'a>], most: usize) -> Option<Self> {
-        let count = outputs.len().min(OUTPUTS);
-        let place = |number: usize| number * outputs.len().saturating_sub(1) / count.saturating_sub(1).max(1);
-        let spread: Vec<Output<'_>> = (0..count).map(|number| outputs[place(number)]).collect();
-        let mut sets = Vec::new();
-        for (number, output) in spread.iter().enumerate() {
-            sets.push((number, picked(output.state, most)));
-            sets.extend(output.state.beside.iter().map(|set| (number, picked(&set.state, most))));
-        }
-        let mut given = Self {
+    /// The columns of some of the outputs that show something; `None` where the scene has no solution at these times.
+    pub fn of(own: &World, mapping: &'a Mapping, states: &[&SampledState]) -> Option<Self> {
+        let count = states.len().min(OUTPUTS);
+        let place = |number: usize| number * states.len().saturating_sub(1) / count.saturating_sub(1).max(1);
+        let before = |place: usize| place.checked_sub(1).map_or(0.0, |before| states[before].time);
+        let places = || (0..count).map(place);
+        let given = Self {
             own: own.clone(),
             mapping,
-            times: spread.iter().map(|output| output.state.time).collect(),
-            before: spread.iter().map(|output| output.before).collect(),
-            are_picked: sets.iter().any(|(_, set)| matches!(set, Cow::Owned(_))),
-            sets,
+            times: places().map(|place| states[place].time).collect(),
+            before: places().map(before).collect(),
+            sets: Vec::new(),
             columns: Vec::new(),
-            exact: Fields::default(),
         };
-        given.exact = own.predict(&given, &given.times)?;
-        // The names of a slab's components: its height lies along x.
-        let [up, along] = if own.is_slab() { ["u_x", "u_y"] } else { ["u_y", "u_x"] };
-        let columns = [
-            (Field::Pressure, "p"),
-            (Field::EffectiveStress, "effective_stress"),
-            (Field::Up, up),
-            (Field::Along, along),
-            (Field::Settlement, "settlement"),
-        ];
-        given.columns = columns.into_iter().filter_map(|(field, name)| given.column(field, name)).collect();
-        let all: Vec<Vec<Scale>> = given.columns.iter().map(|column| scales(column.field, &given)).collect();
-        given.columns.iter_mut().zip(all).for_each(|(column, scales)| column.scales = scales);
+        let height = own.parameters.height;
+        let of_output = |(number, place): (usize, usize)| Set::all_of(number, states[place], height);
+        let sets = places().enumerate().flat_map(of_output).map(|set| set.thinned(SAMPLES[0]));
+        given.with(sets.collect())
+    }
+
+    /// Some of the samples, in the same columns, which are judged by all samples.
+    pub fn thin(&self) -> Option<Self> {
+        let thin =
+            Self { sets: self.sets.iter().map(|set| set.thinned(SAMPLES[1])).collect(), ..self.clone() };
+        let predicted = thin.own.predict(&thin, &thin.times)?;
+        let column = |whole: &Column| Column {
+            residual: whole.residual,
+            limit: whole.limit,
+            is_other_right: whole.is_other_right,
+            ..thin.column(whole.field, &predicted)
+        };
+        Some(Self { columns: self.columns.iter().map(column).collect(), ..thin })
+    }
+
+    /// Some of the outputs, in the columns that are right there and some others.
+    pub fn at_outputs(&self, outputs: &[usize], fields: &[Field]) -> Option<Self> {
+        let sets = self.sets.iter().filter(|set| outputs.contains(&set.output));
+        let mut part = self.with(sets.cloned().collect())?;
+        part.columns.retain(|column| column.is_right() || fields.contains(&column.field));
+        Some(part)
+    }
+
+    /// Other samples, in the columns that show something.
+    fn with(&self, sets: Vec<Set>) -> Option<Self> {
+        let mut given = Self { sets, ..self.clone() };
+        let predicted = given.own.predict(&given, &given.times)?;
+        let is_seen = |column: &Column| {
+            column.size(&column.exact, None) > VANISHED * column.scale
+                || column.size(&column.values, None) > SEEN * column.scale
+        };
+        let columns = Field::ALL.into_iter().map(|field| given.column(field, &predicted));
+        let mut columns: Vec<Column> = columns.filter(is_seen).collect();
+        let residuals: Vec<f64> = columns.iter().map(|column| column.residual).collect();
+        let right = residuals.iter().copied().filter(|residual| *residual <= RIGHT).reduce(f64::max);
+        let most = right.map_or(MOST, |worst| MOST.min(CLEAN.max(AS_OTHERS * worst)));
+        for (place, column) in columns.iter_mut().enumerate() {
+            let is_fine = column.residual < column.mesh || column.values.len() < FEW;
+            column.limit = most.min(if is_fine { CLEAN } else { SHARE } * column.residual);
+            let beside = right_beside(column.residual);
+            let is_beside = |(other, residual): (usize, &f64)| other != place && *residual <= beside;
+            column.is_other_right = residuals.iter().enumerate().any(is_beside);
+        }
+        given.columns = columns;
         Some(given)
     }
 
-    /// A field of all outputs as one column, if it shows something.
-    fn column(&self, field: Field, name: &'static str) -> Option<Column> {
+    /// A field of all outputs as one column.
+    fn column(&self, field: Field, predicted: &Fields) -> Column {
         let parameters = &self.own.parameters;
         let scale = if field.is_stress() { parameters.load } else { parameters.final_settlement() };
-        let mut column = Column { field, name, scale, ..Column::default() };
-        let (mut first, mut rows) = (0, 1);
-        for (number, (output, set)) in self.sets.iter().enumerate() {
-            let settled = set.surface_displacement.map(|up| -up);
-            let (values, heights, from) = match field {
-                Field::Pressure => (&set.pressure[..], &set.initial_height[..], first),
-                Field::EffectiveStress => (&set.effective_stress[..], &set.initial_height[..], first),
-                Field::Up => (&set.displacement[..], &set.initial_height[..], first),
-                Field::Along => (&set.horizontal_displacement[..], &set.initial_height[..], first),
-                Field::Settlement => (settled.as_slice(), &[0.0][..], number),
-            };
-            first += set.initial_height.len();
+        // The height of a slab lies along x.
+        let [up, along] = if self.own.is_slab() { ["u_x", "u_y"] } else { ["u_y", "u_x"] };
+        let name = ["p", "effective_stress", up, along, "settlement"][field as usize];
+        let mut column = Column { field, name, scale, scales: scales(field, self), ..Column::default() };
+        let (mut first, mut rows) = (0, 2);
+        for set in &self.sets {
+            let values = &set.values[field as usize];
             column.values.extend(values);
-            column.at.extend(from..from + values.len());
-            column.heights.extend(heights.iter().take(values.len()));
-            column.distances.extend(set.initial_distance.iter().take(values.len()));
-            column.outputs.extend(values.iter().map(|_| *output));
+            column.at.extend(first..first + values.len());
+            column.heights.extend(set.heights.iter().take(values.len()));
+            column.distances.extend(set.distances.iter().take(values.len()));
+            column.outputs.extend(values.iter().map(|_| set.output));
+            first += set.heights.len();
             if !values.is_empty() {
-                rows = rows.max(lines(heights, parameters.height).len());
+                rows = rows.max(lines(&set.heights, parameters.height).len());
             }
         }
-        let exact = column.exact(&self.exact);
-        column.residual = column.own_residual(&exact);
-        column.mesh = if field == Field::Settlement { 0.0 } else { MESH / powi((rows.max(2) - 1) as f64, 2) };
-        let is_seen = |values: &[f64], share: f64| column.size(values, None) > share * scale;
-        (is_seen(&exact, VANISHED) || is_seen(&column.values, SEEN)).then_some(column)
+        column.exact = column.of_itself(predicted);
+        column.residual = column.own_residual(&column.exact);
+        column.mesh = if field == Field::Settlement { 0.0 } else { MESH / powi((rows - 1) as f64, 2) };
+        column
     }
 
-    /// Judges the columns by their residuals in all samples, and leaves out those that others do not have.
-    pub fn judge_as(&mut self, whole: &Self) {
-        self.columns.retain_mut(|column| {
-            let of = whole.columns.iter().find(|other| other.field == column.field);
-            (column.residual, column.mesh) = of.map_or((0.0, 0.0), |of| (of.residual, of.mesh));
-            of.is_some()
-        });
+    /// Whether these are only some of the samples.
+    pub fn are_picked(&self) -> bool {
+        self.sets.iter().any(|set| set.is_picked)
     }
 
     /// Whether a displacement or a settlement is there, which tells a stiffness from a permeability.
@@ -276,39 +363,16 @@ impl<'a> Given<'a> {
         self.columns.iter().any(|column| !column.field.is_stress())
     }
 
-    /// Whether a stress is there.
-    pub fn is_stressed(&self) -> bool {
-        self.columns.iter().any(|column| column.field.is_stress())
-    }
-
-    /// The first and the last time after the start, s; `None` where there is none.
-    pub fn span(&self) -> Option<[f64; 2]> {
+    /// The first and the last time after the start, s; 0 where there is none.
+    pub fn span(&self) -> [f64; 2] {
         let positive = || self.times.iter().copied().filter(|time| *time > 0.0);
-        Some([positive().reduce(f64::min)?, positive().reduce(f64::max)?])
+        [positive().reduce(f64::min).unwrap_or(0.0), positive().fold(0.0, f64::max)]
     }
 }
 
-/// Some of the samples of a state, spread over all of them without a period: a mistake is in all samples, and every
-/// trial evaluates the exact fields again.
-fn picked(state: &SampledState, most: usize) -> Cow<'_, SampledState> {
-    let all = state.initial_height.len();
-    if all <= 2 * most {
-        return Cow::Borrowed(state);
-    }
-    // One of each of as many equal parts, at a place in it that a multiple of the golden ratio gives.
-    let place = |part: usize| part * all / most + (part.wrapping_mul(0x9e37_79b9) >> 16) % (all / most);
-    let of = |list: &[f64]| (0..most).filter_map(|part| list.get(place(part)).copied()).collect();
-    Cow::Owned(SampledState {
-        time: state.time,
-        initial_distance: of(&state.initial_distance),
-        initial_height: of(&state.initial_height),
-        pressure: of(&state.pressure),
-        effective_stress: of(&state.effective_stress),
-        displacement: of(&state.displacement),
-        horizontal_displacement: of(&state.horizontal_displacement),
-        surface_displacement: state.surface_displacement,
-        ..SampledState::default()
-    })
+/// The error up to which something is right beside what has a larger one.
+pub fn right_beside(error: f64) -> f64 {
+    (SHARE * error).clamp(RIGHT, MOST_BESIDE)
 }
 
 /// A list without its mean.

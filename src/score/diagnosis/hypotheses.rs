@@ -1,7 +1,7 @@
 //! The table of hypotheses: what a column, or all of them, would hold with one mistake, and what to ask.
 //!
-//! A row has at most one number. [`scales`] are factors of a column; [`READINGS`] and [`AT_OTHER_TIMES`] are other contents
-//! of one column; [`WORLDS`] concern all of them.
+//! A row has at most one number. [`scales`] are factors of a column; [`READINGS`] are other contents of one column;
+//! [`WORLDS`] concern all of them.
 
 use super::columns::{Column, Field, Given};
 use super::readings::Exact;
@@ -12,17 +12,20 @@ use oedometer_exact::{Drainage, Reference, ReferenceKind};
 use oedometer_soil::elementary::powi;
 use oedometer_soil::layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
+use oedometer_soil::stiffness::Stiffness;
+use oedometer_wording::{DAY, HOUR, MINUTE, WEEK, YEAR};
 
-/// Units of stress, length and time, in SI.
+/// Units of stress and length, in SI.
 #[rustfmt::skip]
 const STRESSES: [(&str, f64); 7] =
     [("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9), ("bar", 1e5), ("atm", 101_325.0), ("psi", 6_894.757)];
 const LENGTHS: [(&str, f64); 7] =
     [("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("µm", 1e-6), ("km", 1e3), ("in", 0.0254), ("ft", 0.3048)];
+/// Units of time, s, with the word that they have in a velocity.
 #[rustfmt::skip]
-const TIMES: [(&str, f64); 9] = [
-    ("s", 1.0), ("min", 60.0), ("h", 3_600.0), ("d", 86_400.0), ("weeks", 604_800.0), ("a", 31_557_600.0), ("ms", 1e-3), ("µs", 1e-6),
-    ("ns", 1e-9),
+const TIMES: [(&str, f64, &str); 9] = [
+    ("s", 1.0, ""), ("min", MINUTE, "min"), ("h", HOUR, "hour"), ("d", DAY, "day"), ("weeks", WEEK, ""), ("a", YEAR, "year"), ("ms", 1e-3, ""),
+    ("µs", 1e-6, ""), ("ns", 1e-9, ""),
 ];
 /// Viscosity of water at 20 °C, Pa s.
 const VISCOSITY: f64 = 1.0e-3;
@@ -30,6 +33,7 @@ const VISCOSITY: f64 = 1.0e-3;
 pub const NAME: f64 = 2e-3;
 
 /// A factor that all values of a column have.
+#[derive(Clone)]
 pub struct Scale {
     /// What the file holds over the exact value.
     pub factor: f64,
@@ -60,18 +64,12 @@ pub fn scales(field: Field, given: &Given<'_>) -> Vec<Scale> {
     for (unit, si) in table {
         add(own / si, format!("is it in {unit} where {name} is declared"), false);
     }
-    if field == Field::Pressure {
-        for (unit, metres) in [("m", 1.0), ("cm", 0.01), ("mm", 1e-3)] {
-            let asked = format!("is it a head in {unit}, p/γ_w, where {name} is declared");
-            add(own / metres / weight, asked, false);
-        }
+    for (unit, metres) in LENGTHS.iter().take(3).filter(|_| field == Field::Pressure) {
+        add(own / metres / weight, format!("is it a head in {unit}, p/γ_w, where {name} is declared"), false);
     }
     add(own / whole.1, format!("is it divided by the {}", whole.0), false);
-    for (factor, what) in [(2.0, "doubled"), (0.5, "halved")] {
-        // At small strain one column alone cannot tell the load from a factor of its own.
-        let load = if given.columns.len() == 1 { format!("{}, or ", is_load(factor)) } else { String::new() };
-        add(factor, format!("{load}is it {what} where it is written"), true);
-    }
+    add(2.0, format!("is it doubled {WHERE_WRITTEN}"), true);
+    add(0.5, format!("is it halved {WHERE_WRITTEN}"), true);
     let (ratio, nu) = (soil.oedometric_modulus() / soil.youngs_modulus, soil.poissons_ratio);
     if field == Field::EffectiveStress {
         add(nu / (1.0 - nu), "is it the horizontal component, σ_xx = ν/(1 − ν) σ_yy".to_owned(), true);
@@ -85,14 +83,11 @@ pub fn scales(field: Field, given: &Given<'_>) -> Vec<Scale> {
 /// The number of a row.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Number {
-    /// None: the column itself, in its units and with its factors; or another content.
-    Itself,
     None,
     /// Numbers that have a name.
     Named(&'static [f64]),
-    /// A fitted number in which the values are linear, and one that is a factor of them.
+    /// A fitted number in which the values are linear.
     Linear,
-    Factor,
     /// A fitted time, s.
     Time,
 }
@@ -100,44 +95,39 @@ pub enum Number {
 /// What a row needs beside its column.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Need {
-    /// Another column that is right.
+    /// Another column that is right; and that, or next to nothing left.
     OtherRight,
+    OtherRightOrClean,
     TwoOutputs,
+    /// Fields that change by the diffusion of pressure, at any time without much work.
+    Diffusion,
     /// One soil that strains along the height alone, in proportion to its stress.
     OneSoil,
-    LargeStrain,
     /// No other unit or sign.
     OwnUnit,
     /// A sign that no column tells, because it is another quantity.
     AnySign,
 }
 
-/// What varies in the values of a row as the exact solution does: the yardstick of its error.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Varies {
-    AsHeld,
-    HeldAboutMean,
-    AsExact,
-    ExactAboutMean,
-}
-
 /// A hypothesis about one column.
 pub struct Row {
     pub of: &'static [Field],
-    /// What the column would be, and the question; `{}` is the number.
+    /// What the column would be, and the question; `{}` is the number. Nothing is asked of the column itself.
     pub said: &'static str,
     pub asked: &'static str,
-    pub holds: fn(&Exact<'_>, f64) -> Option<Vec<f64>>,
-    pub varies: Varies,
+    /// What varies as the exact solution does, the yardstick of its error, and what is added to each value of it.
+    pub holds: fn(&Exact<'_>, f64) -> Vec<f64>,
+    pub plus: Option<fn(&Exact<'_>, usize, f64) -> f64>,
     pub number: Number,
     /// Single mistakes in it.
     pub count: usize,
     pub needs: &'static [Need],
 }
 
+/// Words of questions about a factor that may be the load's.
+pub const WHERE_WRITTEN: &str = "where it is written";
 const P: &[Field] = &[Field::Pressure];
 const STRESS: &[Field] = &[Field::Pressure, Field::EffectiveStress];
-const ANY: &[Field] = &[Field::Pressure, Field::EffectiveStress, Field::Up, Field::Along, Field::Settlement];
 const MOVED: &[Field] = &[Field::Up, Field::Along, Field::Settlement];
 const NOT_STRESS: &[Field] = &[Field::Pressure, Field::Up, Field::Along, Field::Settlement];
 /// The standard atmosphere and a bar, Pa.
@@ -147,98 +137,88 @@ const ROW: Row = Row {
     of: P,
     said: "the exact one",
     asked: "",
-    holds: |x, _| Some(x.own.clone()),
-    varies: Varies::AsHeld,
+    holds: |x, _| x.own.clone(),
+    plus: None,
     number: Number::None,
     count: 1,
     needs: &[],
+};
+/// A row of other times.
+const LATER: Row = Row { needs: &[Need::Diffusion, Need::TwoOutputs, Need::OwnUnit], ..ROW };
+/// The same of a column beside one that is right.
+const BESIDE: Row = Row {
+    of: &Field::ALL,
+    needs: &[Need::Diffusion, Need::TwoOutputs, Need::OwnUnit, Need::OtherRight],
+    ..ROW
 };
 
 /// What one column may hold.
 #[rustfmt::skip]
 pub const READINGS: &[Row] = &[
-    Row { of: ANY, number: Number::Itself, ..ROW },
-    Row { of: ANY, said: "{} × the exact one at all times and places", asked: "is a factor missing where it is written",
-        holds: |x, factor| x.each(|at| factor * x.own[at]), number: Number::Factor, count: 2, needs: &[Need::OwnUnit], ..ROW },
+    Row { of: &Field::ALL, ..ROW },
+    Row { of: &Field::ALL, said: "{} × the exact one at all times and places", asked: "is a factor missing where it is written",
+        holds: |x, factor| x.each(|at| factor * x.own[at]), number: Number::Linear, count: 2, needs: &[Need::OwnUnit, Need::OtherRightOrClean], ..ROW },
     Row { said: "the exact effective stress", asked: "is it given instead of the pore pressure",
         holds: |x, _| x.each(|at| -x.stress[at]), needs: &[Need::AnySign], ..ROW },
     Row { said: "the exact total stress", asked: "is it given instead of the pore pressure",
         holds: |x, _| x.each(|at| x.pressure[at] - x.stress[at]), needs: &[Need::AnySign], ..ROW },
     Row { of: &[Field::EffectiveStress], said: "the exact pore pressure", asked: "is it given instead of the effective stress",
-        holds: |x, _| Some(x.pressure.clone()), needs: &[Need::AnySign], ..ROW },
+        holds: |x, _| x.pressure.clone(), needs: &[Need::AnySign], ..ROW },
     Row { of: &[Field::EffectiveStress], said: "the exact total stress", asked: "is the pore pressure left in",
         holds: |x, _| x.each(|at| x.stress[at] - x.pressure[at]), ..ROW },
     Row { said: "1 − p/q of the exact one", asked: "is a degree of consolidation given instead",
-        holds: |x, _| x.each(|at| 1.0 - x.own[at] / x.load()), varies: Varies::HeldAboutMean, ..ROW },
+        holds: |x, _| x.each(|at| -x.own[at] / x.parameters.load), plus: Some(|_, _, _| 1.0), ..ROW },
     Row { of: STRESS, said: "the exact strain", asked: "is the strain given instead",
         holds: |x, _| x.each(|at| x.strain(at)), needs: &[Need::OneSoil, Need::AnySign], ..ROW },
     Row { of: STRESS, said: "the exact porosity", asked: "is the porosity given instead, as it changes with the strain",
-        holds: |x, _| x.each(|at| x.porosity() + (1.0 - x.porosity()) * x.strain(at)), varies: Varies::HeldAboutMean, needs: &[Need::OneSoil], ..ROW },
+        holds: |x, _| x.each(|at| (1.0 - x.soil.porosity) * x.strain(at)), plus: Some(|x, _, _| x.soil.porosity), needs: &[Need::OneSoil], ..ROW },
     Row { of: STRESS, said: "the exact void ratio", asked: "is the void ratio given instead",
-        holds: |x, _| x.each(|at| (x.porosity() + x.strain(at)) / (1.0 - x.porosity())), varies: Varies::HeldAboutMean, needs: &[Need::OneSoil], ..ROW },
+        holds: |x, _| x.each(|at| x.strain(at) / (1.0 - x.soil.porosity)), plus: Some(|x, _, _| x.soil.porosity / (1.0 - x.soil.porosity)),
+        needs: &[Need::OneSoil], ..ROW },
     Row { said: "the exact one plus {} Pa", asked: "is it an absolute pressure, with that of the atmosphere left in",
-        holds: |x, constant| x.each(|at| x.own[at] + constant), varies: Varies::HeldAboutMean, number: ATMOSPHERES, ..ROW },
+        plus: Some(|_, _, constant| constant), number: ATMOSPHERES, ..ROW },
     Row { said: "the exact one with the weight of the water", asked: "is the hydrostatic part left in",
-        holds: |x, _| x.each(|at| x.own[at] + x.weight_above(at, 0.0)), varies: Varies::AsExact, ..ROW },
+        plus: Some(|x, at, _| x.weight_above(at)), ..ROW },
     Row { said: "the exact one with the weight of the water", asked: "is the hydrostatic part left in",
-        holds: |x, _| x.each(|at| x.own[at] + x.weight_above(at, x.up[at])), varies: Varies::AsExact, needs: &[Need::LargeStrain], ..ROW },
+        plus: Some(|x, at, _| x.weight_above(at) - x.weight() * x.up[at]), ..ROW },
     Row { said: "the exact one less the weight of the water", asked: "is the hydrostatic part subtracted twice",
-        holds: |x, _| x.each(|at| x.own[at] - x.weight_above(at, 0.0)), varies: Varies::AsExact, ..ROW },
+        plus: Some(|x, at, _| -x.weight_above(at)), ..ROW },
     Row { said: "the exact one with the weight of the water and {} Pa",
         asked: "is the hydrostatic part left in, and is it an absolute pressure, with that of the atmosphere left in",
-        holds: |x, constant| x.each(|at| x.own[at] + x.weight_above(at, 0.0) + constant),
-        varies: Varies::ExactAboutMean, number: ATMOSPHERES, count: 2, ..ROW },
+        plus: Some(|x, at, constant| x.weight_above(at) + constant), number: ATMOSPHERES, count: 2, ..ROW },
     Row { said: "the exact one with the weight of the water and {} Pa", asked: "is the hydrostatic part left in",
-        holds: |x, constant| x.each(|at| x.own[at] + x.weight_above(at, 0.0) + constant),
-        varies: Varies::ExactAboutMean, number: Number::Linear, ..ROW },
+        plus: Some(|x, at, constant| x.weight_above(at) + constant), number: Number::Linear, ..ROW },
     Row { said: "the exact one with the elevation", asked: "is it a total head, with the elevation",
-        holds: |x, _| x.each(|at| x.own[at] + x.weight() * x.column.heights[at]), varies: Varies::AsExact, ..ROW },
+        plus: Some(|x, at, _| x.weight() * x.column.heights[at]), ..ROW },
     Row { said: "the exact one plus {} Pa", asked: "is a constant of {} Pa left in",
-        holds: |x, constant| x.each(|at| x.own[at] + constant), varies: Varies::HeldAboutMean, number: Number::Linear, ..ROW },
+        plus: Some(|_, _, constant| constant), number: Number::Linear, ..ROW },
     Row { of: &[Field::Up], said: "the exact one plus the same at all times, {} m at the top",
         asked: "is the displacement of an earlier stage, such as self-weight, left in",
-        holds: |x, top| x.each(|at| x.own[at] + top * x.column.heights[at] / x.height()),
-        varies: Varies::ExactAboutMean, number: Number::Linear, needs: &[Need::TwoOutputs, Need::OwnUnit], ..ROW },
-];
-
-/// Rows as [`READINGS`] that ask for the exact fields of other times or places: in the file's unit.
-#[rustfmt::skip]
-pub const AT_OTHER_TIMES: &[Row] = &[
+        plus: Some(|x, at, top| top * x.column.heights[at] / x.parameters.height), number: Number::Linear, needs: &[Need::TwoOutputs, Need::OwnUnit], ..ROW },
     Row { of: MOVED, said: "the exact one less that of {} s", asked: "is it counted from a later time, {} s, instead of the start of loading",
-        holds: |x, moment| x.less(&x.at(|_| moment)?, |_| false), number: Number::Time, needs: &[Need::TwoOutputs], ..ROW },
+        holds: |x, moment| x.less(&x.at(|_| moment), |_| false), number: Number::Time, ..LATER },
     Row { of: MOVED, said: "the exact one less that of the first output", asked: "is it reset after the first output, as by a restart or a new stage",
-        holds: |x, _| x.less(&x.at(|_| x.given.times[0])?, |output| output == 0), needs: &[Need::TwoOutputs], ..ROW },
+        holds: |x, _| x.less(&x.at(|_| x.given.times[0]), |output| output == 0), ..LATER },
     Row { of: NOT_STRESS, said: "what the exact one gains from output to output", asked: "is it the increment since the previous output, not the total",
-        holds: |x, _| x.less(&x.at(|output| x.given.before[output])?, |output| x.given.before[output] == 0.0), needs: &[Need::TwoOutputs], ..ROW },
-    Row { of: ANY, said: "the exact one of the previous output", asked: "is it that of the previous output",
-        holds: |x, _| x.at(|output| x.given.before[output]), needs: &[Need::TwoOutputs, Need::OtherRight], ..ROW },
-    Row { of: ANY, said: "the exact one {} s earlier", asked: "does it lag {} s behind the other columns, as by one step or half a step",
-        holds: |x, late| x.at(|output| (x.given.times[output] - late).max(0.0)), number: Number::Time, needs: &[Need::TwoOutputs, Need::OtherRight], ..ROW },
-    Row { of: ANY, said: "the exact one of {} s at all outputs", asked: "is it the same state at all outputs, that of {} s",
-        holds: |x, moment| x.at(|_| moment), number: Number::Time, needs: &[Need::TwoOutputs, Need::OtherRight], ..ROW },
+        holds: |x, _| x.less(&x.at(|output| x.given.before[output]), |output| x.given.before[output] == 0.0), ..LATER },
+    Row { said: "the exact one of the previous output", asked: "is it that of the previous output",
+        holds: |x, _| x.at(|output| x.given.before[output]), ..BESIDE },
+    Row { said: "the exact one {} s earlier", asked: "does it lag {} s behind the other columns, as by one step or half a step",
+        holds: |x, late| x.at(|output| (x.given.times[output] - late).max(0.0)), number: Number::Time, ..BESIDE },
+    Row { said: "the exact one of {} s at all outputs", asked: "is it the same state at all outputs, that of {} s",
+        holds: |x, moment| x.at(|_| moment), number: Number::Time, ..BESIDE },
     Row { of: STRESS, said: "the integral of the exact one over time", asked: "is it integrated over time",
-        holds: |x, _| x.integral(|_| 1.0), needs: &[Need::TwoOutputs], ..ROW },
+        holds: |x, _| x.mean(|seconds| seconds), ..LATER },
     Row { of: STRESS, said: "the mean of the exact one since the start", asked: "is it the mean over time since the start",
-        holds: |x, _| x.integral(|seconds| seconds), needs: &[Need::TwoOutputs], ..ROW },
+        holds: |x, _| x.mean(|_| 1.0), ..LATER },
     Row { of: NOT_STRESS, said: "the rate of the exact one", asked: "is it the rate (velocity), not the total",
-        holds: |x, _| x.rate(), needs: &[Need::TwoOutputs], ..ROW },
-    Row { of: ANY, said: "the exact one upside down", asked: "is only this column written from the other end",
-        holds: |x, _| x.turned(), needs: &[Need::OtherRight], ..ROW },
+        holds: |x, _| x.rate(), ..LATER },
+    Row { of: &Field::ALL, said: "the exact one upside down", asked: "is only this column written from the other end",
+        holds: |x, _| x.turned(), needs: &[Need::OwnUnit, Need::OtherRight], ..ROW },
 ];
 
 /// Numbers with the questions that name them.
 pub type Names = Vec<(f64, String)>;
-
-/// The number of a [`Cause`], fitted.
-pub struct Fit {
-    /// Where it is looked for, between the first and the last time; by decades where it is positive.
-    pub range: fn(&Given<'_>, [f64; 2]) -> [f64; 2],
-    pub names: fn(&Given<'_>) -> Names,
-    /// What to ask of a number without a name.
-    pub asked: fn(&Given<'_>, f64) -> String,
-    /// How a sentence goes on where all larger numbers fit as well, if that means something.
-    pub or_more: &'static str,
-}
 
 /// A hypothesis about all columns.
 pub struct Cause {
@@ -247,36 +227,55 @@ pub struct Cause {
     pub asked: &'static str,
     pub is_possible: fn(&Given<'_>) -> bool,
     pub of: fn(&Given<'_>, World, f64) -> World,
-    pub fit: Option<Fit>,
+    /// Where a number is looked for, between the first and the last time; by decades where it is positive.
+    pub range: Option<fn(&Given<'_>, [f64; 2]) -> [f64; 2]>,
+    pub names: fn(&Given<'_>) -> Names,
+    /// What to ask of a number without a name.
+    pub asked_of: fn(&Given<'_>, f64) -> String,
     /// Whether it concerns times alone: some of the outputs may have it, and it goes with other units.
     pub is_of_times: bool,
 }
 
-const FIT: Fit =
-    Fit { range: |_, _| [1e-6, 1e6], names: |_| Vec::new(), asked: |_, _| String::new(), or_more: "" };
-const CAUSE: Cause =
-    Cause { said: "", asked: "", is_possible: |_| true, of: |_, own, _| own, fit: None, is_of_times: false };
+const CAUSE: Cause = Cause {
+    said: "",
+    asked: "",
+    is_possible: |_| true,
+    of: |_, own, _| own,
+    range: None,
+    names: |_| Vec::new(),
+    asked_of: |_, _| String::new(),
+    is_of_times: false,
+};
+/// A cause with a factor.
+const FACTOR: Cause = Cause { range: Some(|_, _| [1e-6, 1e6]), ..CAUSE };
 
 /// Places that are counted from the other end.
 #[rustfmt::skip]
 pub const UPSIDE_DOWN: Cause = Cause { said: " upside down", asked: "is `y` counted from the other end",
     is_possible: |given| !given.own.is_slab(), of: |_, own, _| World { ends: Ends::UpsideDown, ..own }, ..CAUSE };
 
+/// Times before anything has drained, and after all has.
+#[rustfmt::skip]
+pub const START: Cause = Cause { said: " of the start: nothing has drained at the last time",
+    asked: "is the surface closed, so that nothing drains, or is k, or are the times, far too small",
+    is_possible: |given| given.own.is_slow(), of: |_, own, _| World { clock: [0.0, 0.0], ..own }, ..CAUSE };
+#[rustfmt::skip]
+pub const END: Cause = Cause { said: " of the end",
+    asked: "has everything drained before the first time (is k, or are the times, far too large)", is_possible: |given| given.own.is_slow(), is_of_times: true,
+    of: |given, own, _| World { clock: [0.0, given.own.parameters.time(EDGES[1])], ..own }, ..CAUSE };
+
 /// A factor of all times.
 #[rustfmt::skip]
-pub const CLOCK: Cause = Cause { said: " at {} × the time", asked: "is k, or are the times, far too large", is_possible: |given| given.own.is_slow(),
-    of: |_, own, factor| World { clock: [factor, 0.0], ..own }, is_of_times: true,
-    fit: Some(Fit {
-        range: |given, [first, last]| [EDGES[0] / given.own.parameters.time_factor(last), EDGES[1] / given.own.parameters.time_factor(first)],
-        names: clocks, asked: is_clock, or_more: " or more: everything has drained before the first time" }) };
+pub const CLOCK: Cause = Cause { said: " at {} × the time", is_possible: |given| given.own.is_slow(), is_of_times: true,
+    of: |_, own, factor| World { clock: [factor, 0.0], ..own }, names: clocks, asked_of: is_clock,
+    range: Some(|given, [first, last]| [EDGES[0] / given.own.parameters.time_factor(last), EDGES[1] / given.own.parameters.time_factor(first)]), ..CAUSE };
 
 /// One state at all outputs.
 #[rustfmt::skip]
 pub const ONE_STATE: Cause = Cause { said: " of {} s at all outputs",
     is_possible: |given| given.own.is_slow() && !given.own.kind.row().is_prepared && given.columns.iter().all(Column::stands_still),
-    of: |_, own, moment| World { clock: [0.0, moment], ..own },
-    fit: Some(Fit { range: |given, _| [1e-6, 10.0].map(|factor| given.own.parameters.time(factor)),
-        asked: |_, _| "is the same state written, or read, every time".to_owned(), ..FIT }), ..CAUSE };
+    of: |_, own, moment| World { clock: [0.0, moment], ..own }, range: Some(|given, _| [1e-6, 10.0].map(|factor| given.own.parameters.time(factor))),
+    asked_of: |_, _| "is the same state written, or read, every time".to_owned(), ..CAUSE };
 
 /// What all columns may share.
 #[rustfmt::skip]
@@ -303,62 +302,53 @@ pub const WORLDS: &[Cause] = &[
     Cause { said: " of compressible water", asked: "is the water of your solver compressible, so that `--reference cosine-layer` is the right one",
         is_possible: |given| given.own.kind == ReferenceKind::CosineLayerIncompressible,
         of: |_, own, _| World { kind: ReferenceKind::CosineLayer, ..own }, ..CAUSE },
-    Cause { said: " of the start: nothing has drained at the last time",
-        asked: "is the surface closed, so that nothing drains, or is k, or are the times, far too small",
-        is_possible: |given| given.own.is_slow(), of: |_, own, _| World { clock: [0.0, 0.0], ..own }, ..CAUSE },
+    START,
+    END,
     Cause { said: " of a slab whose load does not move to its middle", asked: "is the top held plane by a rigid plate",
         is_possible: |given| given.own.is_slab() && !given.moves(), of: without_plate, ..CAUSE },
     Cause { said: " of another stiffness", asked: "are λ and μ exchanged", is_possible: |given| is_plane(given) || given.own.is_slab(),
         of: |_, own, _| own.with_soils(exchange_moduli), ..CAUSE },
     Cause { said: " of {} × the load", of: |_, mut own, factor| { own.parameters.load *= factor; own },
-        is_possible: |given| (!given.own.is_linear() || given.moves() && given.is_stressed()) && !given.own.kind.is_manufactured(),
-        fit: Some(Fit { names: loads, asked: |_, factor| is_load(factor), ..FIT }), ..CAUSE },
+        is_possible: |given| (!given.own.is_linear() || given.moves() && given.columns[0].field.is_stress()) && !given.own.kind.is_manufactured(),
+        names: |_| [2.0, 0.5].map(|factor| (factor, is_load(factor))).to_vec(), asked_of: |_, factor| is_load(factor), ..FACTOR },
     ONE_STATE,
     CLOCK,
     Cause { said: " with {} × the stiffness", of: |_, own, factor| own.with_soils(|soil| soil.youngs_modulus *= factor),
         is_possible: |given| given.own.is_slow() && given.moves() && !matches!(given.own.kind, ReferenceKind::LargeStrain(_)),
-        fit: Some(Fit { names: moduli, asked: is_stiffness, ..FIT }), ..CAUSE },
+        names: |given| [moduli(given), tens(3, "is E off by a power of ten, or in another unit")].concat(), asked_of: is_stiffness, ..FACTOR },
     Cause { said: " {} s {side}", is_of_times: true, of: |_, own, moment| World { clock: [1.0, moment], ..own },
-        is_possible: |given| given.own.is_slow() && !given.own.kind.row().is_prepared,
-        fit: Some(Fit { range: |_, [first, last]| [-0.95 * first, last], asked: |_, moment| {
+        is_possible: |given| given.own.is_slow() && !given.own.kind.row().is_prepared, range: Some(|_, [first, last]| [-0.95 * first, last]),
+        asked_of: |_, moment| {
             let late = if moment < 0.0 { "late" } else { "early" };
             format!("do your times start at another moment, so that all are {} s too {late}", shown(moment.abs()))
-        }, ..FIT }), ..CAUSE },
+        }, ..CAUSE },
     Cause { said: " under a load that rises over {} s", of: |_, own, ramp| World { ramp, ..own },
-        is_possible: |given| given.own.kind.row().adds_up && !given.own.parameters.self_weight,
-        fit: Some(Fit { range: |_, [first, last]| [0.05 * first, 10.0 * last],
-            asked: |_, ramp| format!("does your load rise over {} s, in a ramp, whereas that of the problem is sudden", shown(ramp)), ..FIT }), ..CAUSE },
+        is_possible: |given| given.own.kind.row().adds_up && !given.own.parameters.self_weight, range: Some(|_, [first, last]| [0.05 * first, 10.0 * last]),
+        asked_of: |_, ramp| format!("does your load rise over {} s, in a ramp, whereas that of the problem is sudden", shown(ramp)), ..CAUSE },
     Cause { said: " of a skeleton without the pressure",
         asked: "is the pore pressure missing from the momentum balance, so that the skeleton carries the load at once",
         is_possible: |given| given.own.is_slow() && given.moves(), of: |_, own, _| World { is_coupled: false, ..own }, ..CAUSE },
 ];
 
-/// What to ask of a number times another one, in a unit.
-fn is_number(number: f64, factor: f64, unit: &str) -> String {
-    format!("{} {unit} for {}", digits(factor * number), digits(number))
+/// What to ask of a number of the soil that is off by a factor.
+fn is_number(given: &Given<'_>, number: f64, factor: f64, unit: &str) -> String {
+    if given.own.parameters.soils.is_empty() {
+        format!("{} {unit} for {}", digits(factor * number), digits(number))
+    } else {
+        format!("of each layer {} × that of the problem", shown(factor))
+    }
 }
 
 fn is_clock(given: &Given<'_>, factor: f64) -> String {
-    let soil = &given.own.parameters.soil;
     // A stiffness shows in displacements, too; without any it may be meant.
-    let or = if given.moves() {
-        String::new()
-    } else {
-        format!(", or E_oed {}", is_number(soil.oedometric_modulus(), factor, "Pa"))
-    };
-    let k = if given.own.parameters.soils.is_empty() {
-        is_number(soil.hydraulic_conductivity, factor, "m/s")
-    } else {
-        format!("of each layer {} × that of the problem", shown(factor))
-    };
-    format!("is k {k}{or}, or are the times off")
+    let or = if given.moves() { String::new() } else { format!(", or {}", is_stiffness(given, factor)) };
+    let k = given.own.parameters.soil.hydraulic_conductivity;
+    format!("is k {}{or}, or are the times off", is_number(given, k, factor, "m/s"))
 }
 
 fn is_stiffness(given: &Given<'_>, factor: f64) -> String {
-    if !given.own.parameters.soils.is_empty() {
-        return "is the stiffness of each layer off".to_owned();
-    }
-    format!("is E_oed {}", is_number(given.own.parameters.soil.oedometric_modulus(), factor, "Pa"))
+    let modulus = given.own.parameters.soil.oedometric_modulus();
+    format!("is E_oed {}", is_number(given, modulus, factor, "Pa"))
 }
 
 pub fn is_load(factor: f64) -> String {
@@ -378,7 +368,7 @@ fn drained_at_its_base(_: &Given<'_>, mut own: World, _: f64) -> World {
 
 /// λ for μ and μ for λ.
 fn exchange_moduli(soil: &mut Material) {
-    let Moduli { lame, shear, .. } = Moduli::of(soil.youngs_modulus, soil.poissons_ratio);
+    let Stiffness { lame, shear } = soil.stiffness();
     soil.youngs_modulus = lame * (3.0 * shear + 2.0 * lame) / (shear + lame);
     soil.poissons_ratio = shear / (2.0 * (shear + lame));
 }
@@ -391,11 +381,6 @@ fn without_plate(_: &Given<'_>, mut own: World, _: f64) -> World {
     World { kind: ReferenceKind::TerzaghiIncompressible, ..own }
 }
 
-/// Loads that have a name.
-fn loads(_: &Given<'_>) -> Names {
-    [2.0, 0.5, 10.0, 0.1, 1e3, 1e-3, 1e6, 1e-6].map(|factor| (factor, is_load(factor))).to_vec()
-}
-
 /// Factors of the time that have a name, each with its question.
 fn clocks(given: &Given<'_>) -> Names {
     let parameters = &given.own.parameters;
@@ -403,17 +388,19 @@ fn clocks(given: &Given<'_>) -> Names {
         (parameters.soil.unit_weight_of_water(), parameters.soil.gravity, parameters.soil.porosity);
     let declared = given.mapping.units.time;
     let seconds = declared.seconds(1.0, parameters.time(1.0));
+    let is_time = |unit: &str| format!("are times in {unit} where {} is declared", declared.name());
     let mut all: Names = Vec::new();
-    let units = TIMES.into_iter().chain([("T_v", parameters.time(1.0))]);
-    let is_other =
-        |unit: &str| unit != declared.name() && !(unit == "T_v" && declared == TimeUnit::TimeFactor);
-    for (unit, si) in units.filter(|(unit, _)| is_other(unit)) {
-        all.push((si / seconds, format!("are times in {unit} where {} is declared", declared.name())));
+    for (unit, si, word) in TIMES {
+        if unit != declared.name() {
+            all.push((si / seconds, is_time(unit)));
+        }
+        if !word.is_empty() {
+            all.push((si, format!("is k in m/{word} taken for m/s")));
+            all.push((1.0 / si, format!("is k in m/s taken for m/{word}")));
+        }
     }
-    for (word, seconds) in [("min", 60.0), ("hour", 3_600.0), ("day", 86_400.0), ("year", 365.25 * 86_400.0)]
-    {
-        all.push((seconds, format!("is k in m/{word} taken for m/s")));
-        all.push((1.0 / seconds, format!("is k in m/s taken for m/{word}")));
+    if declared != TimeUnit::TimeFactor {
+        all.push((parameters.time(1.0) / seconds, is_time("T_v")));
     }
     let others = [
         (gravity, "is γ_w taken as ρ_w, without g"),
@@ -426,48 +413,37 @@ fn clocks(given: &Given<'_>) -> Names {
         (n, "is k multiplied by the porosity, or are the times off"),
     ];
     all.extend(others.map(|(factor, asked)| (factor, asked.to_owned())));
+    let mut or = ", or c_v,";
     if !given.moves() {
-        all.extend(moduli(given).into_iter().filter(|(_, asked)| !asked.contains("power of ten")));
+        or = ", or c_v or E_oed,";
+        all.extend(moduli(given));
     }
-    let or = if given.moves() { ", or c_v," } else { ", or c_v or E_oed," };
-    let tens = (1..=9).flat_map(|power| [power, -power]);
-    all.extend(tens.map(|power| (powi(10.0, power), format!("is k{or} off by a power of ten"))));
+    all.extend(tens(9, &format!("is k{or} off by a power of ten")));
     all
 }
 
-/// The moduli of a soil.
-struct Moduli {
-    bulk: f64,
-    shear: f64,
-    lame: f64,
-}
-
-impl Moduli {
-    fn of(young: f64, nu: f64) -> Self {
-        let (bulk, shear) = (young / (3.0 * (1.0 - 2.0 * nu)), young / (2.0 * (1.0 + nu)));
-        Self { bulk, shear, lame: bulk - 2.0 * shear / 3.0 }
-    }
+/// Powers of ten.
+fn tens(most: i32, asked: &str) -> Names {
+    let powers = (1..=most).flat_map(|power| [power, -power]);
+    powers.map(|power| (powi(10.0, power), asked.to_owned())).collect()
 }
 
 /// Ratios of moduli that people take for one another, over the right one.
 fn moduli(given: &Given<'_>) -> Names {
     let soil = &given.own.parameters.soil;
-    let (young, nu, oedometric) = (soil.youngs_modulus, soil.poissons_ratio, soil.oedometric_modulus());
-    let Moduli { bulk, shear, lame } = Moduli::of(young, nu);
-    let columns = [
+    let (young, nu, right) = (soil.youngs_modulus, soil.poissons_ratio, soil.oedometric_modulus());
+    let Stiffness { lame, shear } = soil.stiffness();
+    let all = [
+        (right * right / young, "is E_oed given as E"),
         (young, "is E taken for E_oed"),
-        (bulk, "is the bulk modulus K taken for E_oed"),
+        (lame + 2.0 * shear / 3.0, "is the bulk modulus K taken for E_oed"),
         (shear + 2.0 * lame, "are λ and μ exchanged"),
         (young / (1.0 - nu * nu), "is the modulus of plane stress, E/(1 − ν²), taken for E_oed"),
         (shear, "is the shear modulus G taken for E_oed"),
         (2.0 * shear, "is 2G taken for E_oed"),
     ];
     let is_column = !(is_plane(given) || given.own.is_slab());
-    let of_column =
-        columns.into_iter().filter(|_| is_column).map(|(modulus, asked)| (modulus / oedometric, asked));
-    let tens = [-3, -2, -1, 1, 2, 3];
-    let tens = tens.map(|power| (powi(10.0, power), "is E off by a power of ten, or in another unit"));
-    let all = [(oedometric / young, "is E_oed given as E")].into_iter().chain(of_column).chain(tens);
-    let is_other = |(ratio, _): &(f64, &str)| *ratio > 0.0 && (ratio - 1.0).abs() > NAME;
-    all.filter(is_other).map(|(ratio, asked)| (ratio, asked.to_owned())).collect()
+    let named = all.into_iter().take(if is_column { all.len() } else { 1 });
+    let is_other = |(ratio, _): &(f64, String)| *ratio > 0.0 && (ratio - 1.0).abs() > NAME;
+    named.map(|(modulus, asked)| (modulus / right, asked.to_owned())).filter(is_other).collect()
 }

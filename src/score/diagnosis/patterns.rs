@@ -1,8 +1,9 @@
 //! Patterns of samples, and what a column holds or where its residual is when nothing explains it.
 
-use super::columns::{Column, Field, Given, about_mean};
+use super::columns::{Column, FEW, Given, about_mean};
+use super::hypotheses::{END, START};
 use super::readings::Reading;
-use super::search::{FLOOR, Limit, Mistake};
+use super::search::FLOOR;
 use super::{NO_MISTAKE, listed, shown};
 use crate::score::coverage::lines;
 use oedometer_soil::elementary::powi;
@@ -10,9 +11,8 @@ use oedometer_wording::rounded;
 
 /// Most samples in a row that have one sign of an alternating pressure: those of a cell.
 const LONGEST: usize = 4;
-/// Fewest lines of samples that show an alternation, and fewest values that show an order, a place or a likeness.
+/// Fewest lines of samples that show an alternation.
 const FEWEST_LINES: usize = 6;
-const FEWEST: usize = 8;
 /// Share of the error of every output that an alternation may leave.
 const ALTERNATES: f64 = 0.5;
 /// Values below this share of a column's size are as good as zero, and the share by which one is wrong.
@@ -25,27 +25,28 @@ const IN_ONE_PLACE: f64 = 0.8;
 const SAME: f64 = 0.02;
 /// Correlation below which a column does not vary as the exact one.
 const UNLIKE: f64 = 0.5;
+const OUTSIDE: &str = "does a probe lie outside, or is a value missing there";
 const MID_SIDE: &str = "are they mid-side nodes without a value";
 
 /// The patterns of a column in the scene's own world; another order where nothing else explains it.
-pub fn of(field: Field, given: &Given<'_>, limit: &Limit, is_open: bool) -> Vec<Reading> {
-    let Some(column) = given.columns.iter().find(|column| column.field == field) else {
-        return Vec::new();
-    };
-    let exact = column.exact(&given.exact);
-    let order = || order(column, &exact, limit).filter(|_| is_open && !given.are_picked);
-    let all = [blank(column, &exact, given, limit), checkerboard(column, &exact, given), order()];
-    all.into_iter().flatten().collect()
+pub fn of(column: &Column, given: &Given<'_>, is_open: bool) -> Vec<Reading> {
+    let mut all = Vec::from_iter(blank(column, given));
+    if !given.are_picked() {
+        all.extend(checkerboard(column, given));
+        all.extend(order(column).filter(|_| is_open));
+    }
+    all
 }
 
 fn reading(said: String, asked: &str, [count, fitted]: [usize; 2], left: f64, column: &Column) -> Reading {
     let key = format!("{said} {}", column.name);
-    Reading { of: Mistake { said, asked: vec![asked.to_owned()], count, fitted }, key, left }
+    Reading { said, asked: vec![asked.to_owned()], count, fitted, key, left }
 }
 
 /// One number at places where nothing was written: an output, a place, every second row.
-fn blank(column: &Column, exact: &[f64], given: &Given<'_>, limit: &Limit) -> Option<Reading> {
-    let (size, values, height) = (column.size(exact, None), &column.values, given.own.parameters.height);
+fn blank(column: &Column, given: &Given<'_>) -> Option<Reading> {
+    let (values, exact, height) = (&column.values, &column.exact, given.own.parameters.height);
+    let size = column.size(exact, None);
     let seen: Vec<usize> = (0..exact.len()).filter(|at| exact[*at].abs() > NOTABLE * size).collect();
     // The number that stands most often where values are wrong.
     let is_wrong = |at: &&usize| (values[**at] - exact[**at]).abs() > WRONG * size;
@@ -54,10 +55,8 @@ fn blank(column: &Column, exact: &[f64], given: &Given<'_>, limit: &Limit) -> Op
     let blank = *wrong.chunk_by(|a, b| a == b).max_by_key(|same| same.len())?.first()?;
     let blanks: Vec<usize> = seen.iter().copied().filter(|at| values[*at] == blank).collect();
     let mut held = column.itself(exact);
-    for at in &blanks {
-        held.values[*at] = blank;
-    }
-    let left = limit.accepts(column, &held, 1.0)?;
+    blanks.iter().for_each(|at| held.values[*at] = blank);
+    let left = column.accepts(&held, 1.0)?;
     if blanks.len() < 2 || 4 * (seen.len() - blanks.len()) < seen.len() {
         return None;
     }
@@ -68,25 +67,21 @@ fn blank(column: &Column, exact: &[f64], given: &Given<'_>, limit: &Limit) -> Op
         all.dedup();
         seen.iter().all(|at| (values[*at] == blank) == all.contains(&groups[*at])).then_some(all)
     };
-    let of = |groups: Vec<usize>, list: &[f64]| listed(groups.into_iter().map(|group| list[group]));
-    let missing = if blank == 0.0 {
-        "does a probe lie outside, or is a value missing there"
-    } else {
-        "is it a fill value"
+    let all_of = |name: &str, groups: Vec<usize>, list: &[f64], unit: &str| {
+        format!(", all of {name} = {} {unit},", listed(groups.into_iter().map(|group| list[group])))
     };
+    let missing = if blank == 0.0 { OUTSIDE } else { "is it a fill value" };
     let (place, asked) = match (whole(&column.outputs), whole(&rank(&column.heights, height))) {
-        (Some(outputs), _) => {
-            (format!(", all of t = {} s,", of(outputs, &given.times)), "was this output not written")
-        }
+        (Some(outputs), _) => (all_of("t", outputs, &given.times, "s"), "was this output not written"),
         (_, Some(rows)) if rows.len() < 3 => {
-            (format!(", all of y = {} m,", of(rows, &lines(&column.heights, height))), missing)
+            (all_of("y", rows, &lines(&column.heights, height), "m"), missing)
         }
         (_, Some(rows)) if rows.windows(2).all(|pair| pair[1] - pair[0] == 2) => {
             (", every second row,".to_owned(), MID_SIDE)
         }
-        _ => (String::new(), if given.are_picked { MID_SIDE } else { missing }),
+        _ => (String::new(), if given.are_picked() { MID_SIDE } else { missing }),
     };
-    let looked = if given.are_picked { " looked at" } else { "" };
+    let looked = if given.are_picked() { " looked at" } else { "" };
     let [value, blanks, seen] = [rounded(blank), blanks.len().to_string(), seen.len().to_string()];
     let said = format!(
         "is exactly {value} at {blanks} of {seen} samples{looked}{place} where it should not be, and right at the others"
@@ -96,19 +91,20 @@ fn blank(column: &Column, exact: &[f64], given: &Given<'_>, limit: &Limit) -> Op
 
 /// Values that are too large and too small in turn, from line to line of samples or from cell to cell: by a share of the
 /// exact values, or of the load.
-fn checkerboard(column: &Column, exact: &[f64], given: &Given<'_>) -> Option<Reading> {
+fn checkerboard(column: &Column, given: &Given<'_>) -> Option<Reading> {
     let up = rank(&column.heights, given.own.parameters.height);
     let along = rank(&column.distances, given.own.parameters.length);
-    if !column.field.is_stress() || given.are_picked || up.iter().max()? + 1 < FEWEST_LINES {
+    if !column.field.is_stress() || up.iter().max()? + 1 < FEWEST_LINES {
         return None;
     }
+    let exact = &column.exact;
     let (itself, off) = (column.itself(exact), column.beyond(exact, 1.0));
-    let of = |row: usize, is_of_field: bool, is_across: bool| {
-        let sign = |at: usize| {
+    let of = |(row, is_of_field, is_across): (usize, bool, bool)| {
+        let part = |at: usize| {
             let across = if is_across { along.get(at).map_or(0, |number| number / row) } else { 0 };
-            if (up[at] / row + across).is_multiple_of(2) { 1.0 } else { -1.0 }
+            let size = if is_of_field { exact[at] } else { column.scale };
+            if (up[at] / row + across).is_multiple_of(2) { size } else { -size }
         };
-        let part = |at: usize| sign(at) * if is_of_field { exact[at] } else { column.scale };
         let pattern: Vec<f64> = (0..exact.len()).map(part).collect();
         let mut held = column.itself(exact);
         let (mut largest, mut is_halved) = (0.0_f64, true);
@@ -130,10 +126,10 @@ fn checkerboard(column: &Column, exact: &[f64], given: &Given<'_>) -> Option<Rea
         let left = column.misfit(&held, 1.0, None);
         is_halved.then(|| reading(said, asked, [1, 1], left, column))
     };
-    let all = (1..=LONGEST).flat_map(|row| [true, false].map(|is_of_field| (row, is_of_field)));
+    let ways = [(true, false), (true, true), (false, false), (false, true)];
     let all =
-        all.flat_map(|(row, is_of_field)| [false, true].map(|is_across| of(row, is_of_field, is_across)));
-    all.flatten().min_by(|a, b| a.left.total_cmp(&b.left))
+        (1..=LONGEST).flat_map(|row| ways.map(|(is_of_field, is_across)| (row, is_of_field, is_across)));
+    all.filter_map(of).min_by(|a, b| a.left.total_cmp(&b.left))
 }
 
 /// Numbers of the lines of places on which values stand, counted from 0.
@@ -143,71 +139,71 @@ fn rank(places: &[f64], extent: f64) -> Vec<usize> {
 }
 
 /// Outputs that have the right values in another order.
-fn order(column: &Column, exact: &[f64], limit: &Limit) -> Option<Reading> {
-    let mut orders: Vec<Vec<usize>> = Vec::new();
+fn order(column: &Column) -> Option<Reading> {
+    let exact = &column.exact;
     let mut held = column.itself(exact);
     for output in column.own_outputs() {
         let here: Vec<usize> = (0..exact.len()).filter(|at| column.outputs[*at] == output).collect();
         let sorted = |values: &[f64]| {
-            let mut places: Vec<usize> = (0..here.len()).collect();
-            places.sort_by(|a, b| values[here[*a]].total_cmp(&values[here[*b]]));
+            let mut places = here.clone();
+            places.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
             places
         };
-        let (own, right) = (sorted(&column.values), sorted(exact));
-        own.iter().zip(right).for_each(|(own, right)| held.values[here[*own]] = exact[here[right]]);
-        orders.push(own);
+        for (own, right) in sorted(&column.values).into_iter().zip(sorted(exact)) {
+            held.values[own] = exact[right];
+        }
+        if here.len() < FEW / 2 {
+            return None;
+        }
     }
-    let left =
-        limit.accepts(column, &held, 1.0).filter(|left| *left <= FLOOR.max(ORDERED * column.residual))?;
-    let which = if orders.iter().all(|order| *order == orders[0]) { "the same" } else { "another one" };
-    let said = format!("has the right values in another order, {which} at every output");
-    let is_long = orders.iter().all(|order| order.len() >= FEWEST / 2);
-    is_long.then(|| reading(said, "are they numbered differently (a permutation)", [2, 0], left, column))
+    let left = column.accepts(&held, 1.0).filter(|left| *left <= FLOOR.max(ORDERED * column.residual))?;
+    let said = "has the right values of every output in another order".to_owned();
+    Some(reading(said, "are they numbered differently (a permutation)", [2, 0], left, column))
 }
 
-/// What a column holds instead of values: zeros, a constant, numbers in order.
-pub fn content(column: &Column, given: &Given<'_>) -> Option<String> {
-    let (name, first, values) = (column.name, column.values[0], &column.values);
+/// What a column is that nothing explains: the content of its array, what it is beside one that is right, or the place of its
+/// residual.
+pub fn unexplained(column: &Column, given: &Given<'_>) -> Option<String> {
+    let content = content(column, given).or_else(|| unlike(column, given));
+    content.map(|what| format!("your {} {what}?", column.name))
+}
+
+/// What a column holds instead of values: zeros, a constant, numbers in order; and what to ask.
+fn content(column: &Column, given: &Given<'_>) -> Option<String> {
+    let (first, values) = (column.values[0], &column.values);
     let counts = |output: usize| {
         let here = column.at_output(output);
         here.len() > 2 && first.fract() == 0.0 && here.windows(2).all(|pair| (pair[1] - pair[0]).abs() == 1.0)
     };
     if column.is_zero() {
-        let or = match column.field.is_stress() {
-            true if !given.moves() => {
-                ", or has everything drained before the first time (is k, or are the times, far too large)"
-            }
-            false if !given.is_stressed() => ", or is the surface closed, so that nothing drains",
-            _ => "",
-        };
-        Some(format!("your {name} is 0 everywhere: is it the wrong array{or}?"))
+        let drained = if column.field.is_stress() { END } else { START };
+        let alone = if given.columns.len() > 1 { String::new() } else { format!(", or {}", drained.asked) };
+        Some(format!("is 0 everywhere: is it the wrong array{alone}"))
     } else if values.len() > 1 && values.iter().all(|value| (value / first - 1.0).abs() <= 1e-9) {
-        Some(format!("your {name} is {} at all places and times: is it the wrong array?", rounded(first)))
+        Some(format!("is {} at all places and times: is it the wrong array", rounded(first)))
     } else {
-        let first = rounded(first);
-        let told = format!("your {name} counts from {first} by ones: are these node or cell numbers?");
+        let told = format!("counts from {} by ones: are these node or cell numbers", rounded(first));
         column.own_outputs().into_iter().all(counts).then_some(told)
     }
 }
 
-/// What a column that nothing explains is beside one that is right: the same at all outputs, or unlike the exact one.
-pub fn unlike(column: &Column, given: &Given<'_>) -> Option<String> {
-    let (values, exact) = (about_mean(&column.values), about_mean(&column.exact(&given.exact)));
+/// What a column is beside one that is right: the same at all outputs, or unlike the exact one.
+fn unlike(column: &Column, given: &Given<'_>) -> Option<String> {
+    let (values, exact) = (about_mean(&column.values), about_mean(&column.exact));
     let alike = column.factor(&values, &exact, None) * column.size(&exact, None) / column.size(&values, None);
+    let is_unlike = values.len() >= FEW && alike.abs() < UNLIKE && place(column, given).is_none();
     let what = match column.stands_still() {
-        _ if !Limit::of(column, given).is_other_right => return None,
+        _ if !column.is_other_right => return None,
         true => "is the same at all outputs and unlike the exact one at any time",
-        false if values.len() >= FEWEST && alike.abs() < UNLIKE && place(column, given).is_none() => {
-            "does not vary as the exact one"
-        }
+        false if is_unlike => "does not vary as the exact one",
         false => return None,
     };
-    Some(format!("your {} {what}: is it the wrong array?", column.name))
+    Some(format!("{what}: is it the wrong array"))
 }
 
 /// Where a residual without a cause sits, if it sits in one place.
 pub fn place(column: &Column, given: &Given<'_>) -> Option<String> {
-    let off = column.beyond(&column.exact(&given.exact), 1.0);
+    let off = column.beyond(&column.exact, 1.0);
     let height = given.own.parameters.height;
     let power = |at: usize| powi(off[at] / column.scale, 2);
     let is_row = |row: &f64| {
@@ -216,12 +212,13 @@ pub fn place(column: &Column, given: &Given<'_>) -> Option<String> {
     };
     let first = column.at_output(column.outputs[0]).len();
     let differs: Vec<f64> = off.iter().enumerate().map(|(at, here)| here - off[at % first]).collect();
-    let is_same = off.len() == first * column.own_outputs().len()
+    let is_same = off.len() > first
+        && off.len() == first * column.own_outputs().len()
         && column.size(&differs, None) <= SAME * column.size(&off, None);
     let what = match lines(&column.heights, height).into_iter().find(is_row) {
-        _ if off.len() < FEWEST => return None,
+        _ if off.len() < FEW => return None,
         Some(row) => format!("nearly all of it sits at y = {} m", rounded(row)),
-        None if is_same && off.len() > first => "the difference is the same at all outputs".to_owned(),
+        None if is_same => "the difference is the same at all outputs".to_owned(),
         None => return None,
     };
     let percent = rounded((100.0 * column.residual).round());

@@ -2,8 +2,7 @@
 //!
 //! A world predicts every column of a result at once, so a cause that one column excludes is never named for another.
 
-use super::columns::Given;
-use crate::import::SampledState;
+use super::columns::{Given, Set};
 use crate::measure::fields::{ExactFields, SamplePlaces};
 use oedometer_exact::row::{Axis, Changes};
 use oedometer_exact::{ColumnParameters, Drainage, Reference, ReferenceKind};
@@ -15,17 +14,10 @@ pub const EDGES: [f64; 2] = [1e-9, 40.0];
 /// [`EDGES`] of solutions that are computed step by step.
 const STEPPED_EDGES: [f64; 2] = [1e-8, 5.0];
 
-/// Places in [0, 1] and weights of Gauss' rule of six points.
-pub const GAUSS: [(f64, f64); 6] = [
-    (0.033_765_242_898_423_97, 0.085_662_246_189_585_17),
-    (0.169_395_306_766_867_76, 0.180_380_786_524_069_3),
-    (0.380_690_406_958_401_56, 0.233_956_967_286_345_53),
-    (0.619_309_593_041_598_4, 0.233_956_967_286_345_53),
-    (0.830_604_693_233_132_2, 0.180_380_786_524_069_3),
-    (0.966_234_757_101_576, 0.085_662_246_189_585_17),
-];
+/// Parts of an integral over time.
+const PARTS: u32 = 10;
 
-/// Values of each [`Field`](super::columns::Field) in its order, at all samples of all sets; of the settlement one a set.
+/// Values of each [`Field`](super::columns::Field) in its order, at all samples of all sets.
 pub type Fields = [Vec<f64>; 5];
 
 /// Where places lie in the body.
@@ -67,22 +59,16 @@ impl World {
     /// This world with all its soils changed: that of the column, and those of its layers.
     #[must_use]
     pub fn with_soils(mut self, change: impl Fn(&mut Material)) -> Self {
-        let changed = |mut soil: Material| {
-            change(&mut soil);
-            soil
-        };
         let soil = self.parameters.soil;
-        let layer = |layer: &SoilLayer| {
-            let soil = changed(layer.soil(&soil));
-            SoilLayer {
-                youngs_modulus: Some(soil.youngs_modulus),
-                poissons_ratio: Some(soil.poissons_ratio),
-                water_bulk_modulus: Some(soil.water_bulk_modulus),
-                ..*layer
-            }
+        change(&mut self.parameters.soil);
+        let changed = |layer: &SoilLayer| {
+            let mut soil = layer.soil(&soil);
+            change(&mut soil);
+            let [young, nu, water] =
+                [soil.youngs_modulus, soil.poissons_ratio, soil.water_bulk_modulus].map(Some);
+            SoilLayer { youngs_modulus: young, poissons_ratio: nu, water_bulk_modulus: water, ..*layer }
         };
-        self.parameters.soil = changed(soil);
-        let layers: Vec<SoilLayer> = self.parameters.soils.iter().map(layer).collect();
+        let layers: Vec<SoilLayer> = self.parameters.soils.iter().map(changed).collect();
         self.parameters.soils = SoilLayers::from_slice(&layers).unwrap_or(self.parameters.soils);
         self
     }
@@ -126,9 +112,9 @@ impl World {
         let factors: Vec<f64> = times.iter().map(|time| self.time_factor(*time)).collect();
         let solution = Reference::for_lines(self.kind, &self.parameters, &factors).ok()?;
         let mut all = Fields::default();
-        for (output, set) in &given.sets {
+        for set in &given.sets {
             let mut here = Fields::default();
-            for (share, age) in self.parts_of_load(times[*output]) {
+            for (share, age) in self.parts_of_load(times[set.output]) {
                 for (sum, part) in here.iter_mut().zip(self.state(&solution, self.time_factor(age), set)?) {
                     sum.resize(part.len(), 0.0);
                     sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += share * part);
@@ -139,23 +125,21 @@ impl World {
         Some(all)
     }
 
-    /// Shares of the load with their ages, s: all of it, or of a rising load some, most of them young.
+    /// Shares of the load with their ages, s: all of it, or of a rising load some.
     fn parts_of_load(&self, seconds: f64) -> Vec<(f64, f64)> {
         if self.ramp == 0.0 {
             return vec![(1.0, seconds)];
         }
         let youngest = (seconds - self.ramp).max(0.0);
         let span = seconds - youngest;
-        let part =
-            |(place, weight)| (2.0 * span * place * weight / self.ramp, youngest + span * place * place);
-        GAUSS.map(part).to_vec()
+        early_parts().map(|(place, weight)| (span * weight / self.ramp, youngest + span * place)).collect()
     }
 
     /// The fields at the places of a set under the whole load.
-    fn state(&self, solution: &Reference, time: f64, set: &SampledState) -> Option<Fields> {
+    fn state(&self, solution: &Reference, time: f64, set: &Set) -> Option<Fields> {
         let (height, length) = (self.parameters.height, self.parameters.length);
         let place = |(place, y): (usize, &f64)| {
-            let (x, y) = (set.initial_distance.get(place).copied().unwrap_or(0.0), *y);
+            let (x, y) = (set.distances.get(place).copied().unwrap_or(0.0), *y);
             match self.ends {
                 Ends::Own => (x, y),
                 Ends::UpsideDown | Ends::DrainedBase => (x, height - y),
@@ -163,8 +147,8 @@ impl World {
                 Ends::OtherSide => (length - x, y),
             }
         };
-        let (x, heights): (Vec<f64>, Vec<f64>) = set.initial_height.iter().enumerate().map(place).unzip();
-        let distances = if set.initial_distance.is_empty() { &[][..] } else { &x };
+        let (x, heights): (Vec<f64>, Vec<f64>) = set.heights.iter().enumerate().map(place).unzip();
+        let distances = if set.distances.is_empty() { &[][..] } else { &x };
         let at = |time: f64| {
             ExactFields::of(solution, time, SamplePlaces { height, heights: &heights, distances })
         };
@@ -185,6 +169,18 @@ impl World {
             let torn = pressure.iter_mut().zip(&heights).filter(|(_, y)| is_drained(**y));
             torn.for_each(|(pressure, _)| *pressure = f64::NAN);
         }
-        Some([pressure, effective_stress, displacement, horizontal_displacement, vec![settlement]])
+        Some([
+            pressure,
+            effective_stress,
+            displacement,
+            horizontal_displacement,
+            vec![settlement; heights.len()],
+        ])
     }
+}
+
+/// Shares of a time with their weights in a mean over it: most are early, as most happens then, as the root of the time.
+pub fn early_parts() -> impl Iterator<Item = (f64, f64)> {
+    let part = |number: u32| (f64::from(number) + 0.5) / f64::from(PARTS);
+    (0..PARTS).map(part).map(|place| (place * place, 2.0 * place / f64::from(PARTS)))
 }

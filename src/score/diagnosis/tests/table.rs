@@ -118,7 +118,7 @@ const ROWS: [(&str, &str, f64, Edit); 23] = [
     ("is only this column written from the other end", "p", 1e-2, |states| {
         each(states, |one| one.pressure.reverse());
     }),
-    ("another order, the same at every output", "p", 0.0, |states| {
+    ("the right values of every output in another order", "p", 0.0, |states| {
         each(states, |one| one.pressure.rotate_left(7));
     }),
     (
