@@ -89,15 +89,14 @@ fn told_of(given: &Given<'_>, is_part: bool) -> Vec<String> {
     {
         return Vec::from_iter(content(column));
     }
-    let found = given.thin().and_then(|thin| search::explanation(&thin, given, is_part));
-    let is_world = found.as_ref().is_some_and(|found| found.of.count > 0);
-    let mut told = found.as_ref().map_or(Vec::new(), |found| sentences(found, given));
-    let is_open = |(place, column): &(usize, &Column)| match &found {
-        Some(found) => found.readings[*place].is_none(),
-        None => !column.is_right(),
+    let Some(found) = given.thin().and_then(|thin| search::explanation(&thin, given, is_part)) else {
+        return Vec::new();
     };
-    let open = given.columns.iter().enumerate().filter(is_open).map(|(_, column)| column);
-    let open: Vec<&Column> = open.collect();
+    let is_world = found.of.count > 0;
+    let mut told = sentences(&found, given);
+    let columns = given.columns.iter().zip(&found.readings);
+    let open: Vec<&Column> =
+        columns.filter(|(_, reading)| reading.is_none()).map(|(column, _)| column).collect();
     if !is_part
         && !is_world
         && let Some(apart) = told_apart(&open, given)
@@ -184,12 +183,11 @@ fn sentences(found: &Explanation, given: &Given<'_>) -> Vec<String> {
         }
     }
     groups.sort_by_key(|(of, _)| of.count);
-    let shared = [&found.of.asked[..], &[]];
-    let alternatives = [&found.alternatives[..], &[]];
+    let none = Reading::default();
     let sentence = |(place, (of, columns)): (usize, (&Reading, Vec<&str>))| {
-        let place = place.min(1);
-        let asked = [&of.asked[..], shared[place]].concat().join(", and ");
-        let asked = [&[asked][..], alternatives[place]].concat().join(", or ");
+        let shared = if place == 0 { &found.of } else { &none };
+        let asked = [&of.asked[..], &shared.asked].concat().join(", and ");
+        let asked = [&[asked][..], &of.or, &shared.or].concat().join(", or ");
         format!("{} {}{}: {asked}?", who(&columns, "each of your"), of.said, found.of.said)
     };
     groups.into_iter().enumerate().map(sentence).collect()

@@ -202,8 +202,6 @@ pub struct Set {
     pub distances: Vec<f64>,
     /// The values of each [`Field`] in its order.
     values: Fields,
-    /// Whether these are only some of the samples.
-    is_picked: bool,
 }
 
 impl Set {
@@ -214,7 +212,7 @@ impl Set {
                 state.clone();
             let values = [pressure, effective_stress, displacement, horizontal_displacement, Vec::new()];
             let (heights, distances) = (state.initial_height.clone(), state.initial_distance.clone());
-            Self { output, heights, distances, values, is_picked: false }
+            Self { output, heights, distances, values }
         };
         let beside = state.beside.iter().map(|beside| &beside.state);
         let mut all: Vec<Self> = std::iter::once(state).chain(beside).map(of).collect();
@@ -241,7 +239,6 @@ impl Set {
             heights: of(&self.heights),
             distances: of(&self.distances),
             values: self.values.each_ref().map(of),
-            is_picked: true,
         }
     }
 }
@@ -351,11 +348,6 @@ impl<'a> Given<'a> {
         column.residual = column.own_residual(&column.exact);
         column.mesh = if field == Field::Settlement { 0.0 } else { MESH / powi((rows - 1) as f64, 2) };
         column
-    }
-
-    /// Whether these are only some of the samples.
-    pub fn are_picked(&self) -> bool {
-        self.sets.iter().any(|set| set.is_picked)
     }
 
     /// Whether a displacement or a settlement is there, which tells a stiffness from a permeability.

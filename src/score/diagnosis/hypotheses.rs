@@ -37,8 +37,8 @@ pub const NAME: f64 = 2e-3;
 pub struct Scale {
     /// What the file holds over the exact value.
     pub factor: f64,
-    /// What to ask; nothing of the column's own unit.
-    pub asked: String,
+    /// What to ask, in turn; nothing of the column's own unit.
+    pub asked: Vec<String>,
     /// Whether it is of this column alone, and goes with no other mistake.
     pub is_alone: bool,
 }
@@ -47,11 +47,11 @@ pub struct Scale {
 pub fn scales(field: Field, given: &Given<'_>) -> Vec<Scale> {
     let (units, parameters) = (&given.mapping.units, &given.own.parameters);
     let (soil, weight) = (&parameters.soil, parameters.soil.unit_weight_of_water());
-    let mut all = vec![Scale { factor: 1.0, asked: String::new(), is_alone: false }];
+    let mut all = vec![Scale { factor: 1.0, asked: Vec::new(), is_alone: false }];
     let mut add = |factor: f64, asked: String, is_alone: bool| {
         let is_new = all.iter().all(|other| (factor / other.factor - 1.0).abs() > NAME);
         if is_new && factor.is_normal() {
-            all.push(Scale { factor, asked, is_alone });
+            all.push(Scale { factor, asked: vec![asked], is_alone });
         }
     };
     let (table, own, name, whole) = if field.is_stress() {
@@ -77,7 +77,12 @@ pub fn scales(field: Field, given: &Given<'_>) -> Vec<Scale> {
         add(ratio, "is E taken for E_oed where displacements are computed".to_owned(), true);
         add(1.0 / ratio, "is E_oed taken for E where displacements are computed".to_owned(), true);
     }
-    all
+    let turned = |scale: &Scale| {
+        let asked = [&scale.asked[..], &[SIGN.to_owned()]].concat();
+        Scale { factor: -scale.factor, asked, ..*scale }
+    };
+    let turned: Vec<Scale> = all.iter().map(turned).collect();
+    [all, turned].concat()
 }
 
 /// The number of a row.
@@ -95,7 +100,7 @@ pub enum Number {
 /// What a row needs beside its column.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Need {
-    /// Another column that is right; and that, or next to nothing left.
+    /// Another column that is right; that, or next to nothing left.
     OtherRight,
     OtherRightOrClean,
     TwoOutputs,
@@ -124,7 +129,8 @@ pub struct Row {
     pub needs: &'static [Need],
 }
 
-/// Words of questions about a factor that may be the load's.
+/// What to ask of a sign, and words of questions about a factor that may be the load's.
+pub const SIGN: &str = "is the sign declared wrongly";
 pub const WHERE_WRITTEN: &str = "where it is written";
 const P: &[Field] = &[Field::Pressure];
 const STRESS: &[Field] = &[Field::Pressure, Field::EffectiveStress];

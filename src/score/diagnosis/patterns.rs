@@ -22,25 +22,19 @@ const WRONG: f64 = 3e-3;
 const ORDERED: f64 = 0.2;
 /// Share of an error that sits in one place, and its share by which those of all outputs may differ.
 const IN_ONE_PLACE: f64 = 0.8;
-const SAME: f64 = 0.02;
 /// Correlation below which a column does not vary as the exact one.
 const UNLIKE: f64 = 0.5;
 const OUTSIDE: &str = "does a probe lie outside, or is a value missing there";
-const MID_SIDE: &str = "are they mid-side nodes without a value";
 
 /// The patterns of a column in the scene's own world; another order where nothing else explains it.
 pub fn of(column: &Column, given: &Given<'_>, is_open: bool) -> Vec<Reading> {
-    let mut all = Vec::from_iter(blank(column, given));
-    if !given.are_picked() {
-        all.extend(checkerboard(column, given));
-        all.extend(order(column).filter(|_| is_open));
-    }
-    all
+    let order = || order(column).filter(|_| is_open);
+    [blank(column, given), checkerboard(column, given), order()].into_iter().flatten().collect()
 }
 
 fn reading(said: String, asked: &str, [count, fitted]: [usize; 2], left: f64, column: &Column) -> Reading {
     let key = format!("{said} {}", column.name);
-    Reading { said, asked: vec![asked.to_owned()], count, fitted, key, left }
+    Reading { said, asked: vec![asked.to_owned()], count, fitted, key, left, or: Vec::new() }
 }
 
 /// One number at places where nothing was written: an output, a place, every second row.
@@ -76,15 +70,14 @@ fn blank(column: &Column, given: &Given<'_>) -> Option<Reading> {
         (_, Some(rows)) if rows.len() < 3 => {
             (all_of("y", rows, &lines(&column.heights, height), "m"), missing)
         }
-        (_, Some(rows)) if rows.windows(2).all(|pair| pair[1] - pair[0] == 2) => {
-            (", every second row,".to_owned(), MID_SIDE)
+        _ if blank == 0.0 => {
+            (String::new(), "are they mid-side nodes without a value, or is a value missing there")
         }
-        _ => (String::new(), if given.are_picked() { MID_SIDE } else { missing }),
+        _ => (String::new(), missing),
     };
-    let looked = if given.are_picked() { " looked at" } else { "" };
     let [value, blanks, seen] = [rounded(blank), blanks.len().to_string(), seen.len().to_string()];
     let said = format!(
-        "is exactly {value} at {blanks} of {seen} samples{looked}{place} where it should not be, and right at the others"
+        "is exactly {value} at {blanks} of {seen} samples looked at{place} where it should not be, and right at the others"
     );
     Some(reading(said, asked, [1, 0], left, column))
 }
@@ -161,44 +154,36 @@ fn order(column: &Column) -> Option<Reading> {
     Some(reading(said, "are they numbered differently (a permutation)", [2, 0], left, column))
 }
 
-/// What a column is that nothing explains: the content of its array, what it is beside one that is right, or the place of its
-/// residual.
+/// What a column is that nothing explains: zeros, a constant, numbers in order; or beside one that is right the same at all
+/// outputs, or unlike the exact one.
 pub fn unexplained(column: &Column, given: &Given<'_>) -> Option<String> {
-    let content = content(column, given).or_else(|| unlike(column, given));
-    content.map(|what| format!("your {} {what}?", column.name))
-}
-
-/// What a column holds instead of values: zeros, a constant, numbers in order; and what to ask.
-fn content(column: &Column, given: &Given<'_>) -> Option<String> {
-    let (first, values) = (column.values[0], &column.values);
-    let counts = |output: usize| {
-        let here = column.at_output(output);
+    let (first, values, outputs) = (column.values[0], &column.values, column.own_outputs());
+    let counts = |output: &usize| {
+        let here = column.at_output(*output);
         here.len() > 2 && first.fract() == 0.0 && here.windows(2).all(|pair| (pair[1] - pair[0]).abs() == 1.0)
     };
-    if column.is_zero() {
-        let drained = if column.field.is_stress() { END } else { START };
-        let alone = if given.columns.len() > 1 { String::new() } else { format!(", or {}", drained.asked) };
-        Some(format!("is 0 everywhere: is it the wrong array{alone}"))
-    } else if values.len() > 1 && values.iter().all(|value| (value / first - 1.0).abs() <= 1e-9) {
-        Some(format!("is {} at all places and times: is it the wrong array", rounded(first)))
-    } else {
-        let told = format!("counts from {} by ones: are these node or cell numbers", rounded(first));
-        column.own_outputs().into_iter().all(counts).then_some(told)
-    }
-}
-
-/// What a column is beside one that is right: the same at all outputs, or unlike the exact one.
-fn unlike(column: &Column, given: &Given<'_>) -> Option<String> {
-    let (values, exact) = (about_mean(&column.values), about_mean(&column.exact));
-    let alike = column.factor(&values, &exact, None) * column.size(&exact, None) / column.size(&values, None);
+    let (varying, exact) = (about_mean(values), about_mean(&column.exact));
+    let alike =
+        column.factor(&varying, &exact, None) * column.size(&exact, None) / column.size(&varying, None);
     let is_unlike = values.len() >= FEW && alike.abs() < UNLIKE && place(column, given).is_none();
-    let what = match column.stands_still() {
-        _ if !column.is_other_right => return None,
-        true => "is the same at all outputs and unlike the exact one at any time",
-        false if is_unlike => "does not vary as the exact one",
-        false => return None,
+    let array = "is it the wrong array";
+    let told = if column.is_zero() && given.columns.len() > 1 {
+        format!("is 0 everywhere: {array}")
+    } else if column.is_zero() {
+        let cause = if column.field.is_stress() { END } else { START };
+        format!("is 0 everywhere: {array}, or {}", cause.asked)
+    } else if values.len() > 1 && values.iter().all(|value| (value / first - 1.0).abs() <= 1e-9) {
+        format!("is {} at all places and times: {array}", rounded(first))
+    } else if outputs.iter().all(counts) {
+        format!("counts from {} by ones: are these node or cell numbers", rounded(first))
+    } else if column.is_other_right && column.stands_still() {
+        format!("is the same at all outputs and unlike the exact one at any time: {array}")
+    } else if column.is_other_right && is_unlike {
+        format!("does not vary as the exact one: {array}")
+    } else {
+        return None;
     };
-    Some(format!("{what}: is it the wrong array"))
+    Some(format!("your {} {told}?", column.name))
 }
 
 /// Where a residual without a cause sits, if it sits in one place.
@@ -210,17 +195,11 @@ pub fn place(column: &Column, given: &Given<'_>) -> Option<String> {
         let there = (0..off.len()).filter(|at| (column.heights[*at] - row).abs() < 1e-6 * height);
         there.map(power).sum::<f64>() > IN_ONE_PLACE * (0..off.len()).map(power).sum::<f64>()
     };
-    let first = column.at_output(column.outputs[0]).len();
-    let differs: Vec<f64> = off.iter().enumerate().map(|(at, here)| here - off[at % first]).collect();
-    let is_same = off.len() > first
-        && off.len() == first * column.own_outputs().len()
-        && column.size(&differs, None) <= SAME * column.size(&off, None);
-    let what = match lines(&column.heights, height).into_iter().find(is_row) {
-        _ if off.len() < FEW => return None,
-        Some(row) => format!("nearly all of it sits at y = {} m", rounded(row)),
-        None if is_same => "the difference is the same at all outputs".to_owned(),
-        None => return None,
-    };
+    let row = lines(&column.heights, height).into_iter().find(is_row).filter(|_| off.len() >= FEW)?;
     let percent = rounded((100.0 * column.residual).round());
-    Some(format!("your {} is off by {percent} %, and {NO_MISTAKE}: {what}", column.name))
+    let at = rounded(row);
+    Some(format!(
+        "your {} is off by {percent} %, and {NO_MISTAKE}: nearly all of it sits at y = {at} m",
+        column.name
+    ))
 }

@@ -1,7 +1,7 @@
 //! Readings of one column: what it would hold by each row of the table, in each unit and with either sign.
 
 use super::columns::{CLEAN, Column, Field, Given, Held, about_mean};
-use super::hypotheses::{Need, Number, READINGS, Row, Scale, WHERE_WRITTEN, is_load};
+use super::hypotheses::{Need, Number, READINGS, Row, SIGN, Scale, WHERE_WRITTEN, is_load};
 use super::search::minimum;
 use super::shown;
 use super::world::{Ends, Fields, World, early_parts};
@@ -142,8 +142,9 @@ impl<'a> Exact<'a> {
 pub struct Reading {
     /// What the columns do; of a world how that goes on after "the exact one".
     pub said: String,
-    /// What to ask.
+    /// What to ask, and what of others that are as good.
     pub asked: Vec<String>,
+    pub or: Vec<String>,
     /// Number of single mistakes, and of numbers that were fitted.
     pub count: usize,
     pub fitted: usize,
@@ -187,21 +188,19 @@ fn of_row(x: &Exact<'_>, row: &Row, is_own: bool) -> Vec<Reading> {
         true => is_own && row.asked.is_empty(),
         false => scale.asked.is_empty() || !needs(Need::OwnUnit),
     };
-    let signs = if needs(Need::OwnUnit) { &[1.0][..] } else { &[1.0, -1.0] };
-    let scales = column.scales.iter().filter(is_tried);
-    for (scale, sign) in scales.flat_map(|scale| signs.iter().map(move |sign| (scale, *sign))) {
-        let factor = sign * scale.factor;
-        for number in x.numbers(row, factor) {
-            let Some(left) = column.accepts(&x.held(row, number), factor) else {
+    let is_sure = |left: &f64| {
+        !needs(Need::OtherRightOrClean) || column.is_other_right || *left <= CLEAN * column.residual
+    };
+    for scale in column.scales.iter().filter(is_tried) {
+        for number in x.numbers(row, scale.factor) {
+            let left = column.accepts(&x.held(row, number), scale.factor).filter(is_sure);
+            let Some(left) = left else {
                 continue;
             };
-            let is_sure = column.is_other_right || left <= CLEAN * column.residual;
             let filled = |text: &str| text.replace("{}", &shown(number));
-            let is_turned = sign < 0.0 && !needs(Need::AnySign);
-            let sign_asked = if is_turned { "is the sign declared wrongly" } else { "" };
-            let mut asked = vec![filled(row.asked), scale.asked.clone(), sign_asked.to_owned()];
-            asked.retain(|asked| !asked.is_empty());
-            if asked.is_empty() || needs(Need::OtherRightOrClean) && !is_sure {
+            let mut asked = [&[filled(row.asked)][..], &scale.asked].concat();
+            asked.retain(|asked| !asked.is_empty() && !(needs(Need::AnySign) && asked == SIGN));
+            if asked.is_empty() {
                 continue;
             }
             // At small strain one column alone cannot tell the load from a factor of its own.
@@ -209,18 +208,18 @@ fn of_row(x: &Exact<'_>, row: &Row, is_own: bool) -> Vec<Reading> {
             if is_factor && x.given.columns.len() == 1 {
                 asked[0] = format!("{}, or {}", is_load(scale.factor * number), asked[0]);
             }
-            let said = match factor {
+            let said = match scale.factor {
                 1.0 => format!("matches {}", filled(row.said)),
-                _ => format!("is {} × {}", shown(factor), filled(row.said)),
+                factor => format!("is {} × {}", shown(factor), filled(row.said)),
             };
             let is_alone = scale.is_alone || is_factor || needs(Need::OtherRight);
-            let of = if is_alone { column.name } else { "" };
             all.push(Reading {
-                key: format!("{} {number} {} {sign} {of}", row.said, scale.asked),
+                key: format!("{said} {asked:?} {}", if is_alone { column.name } else { "" }),
                 said,
                 count: asked.len() + row.count - 1,
                 asked,
                 fitted: usize::from(matches!(row.number, Number::Linear | Number::Time)),
+                or: Vec::new(),
                 left,
             });
         }

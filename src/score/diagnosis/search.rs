@@ -5,10 +5,11 @@ use super::hypotheses::{CLOCK, Cause, NAME, ONE_STATE, Scale, UPSIDE_DOWN, WORLD
 use super::readings::{Exact, Reading, accepted};
 use super::world::World;
 use super::{patterns, shown};
-use oedometer_soil::elementary::{exp, ln, powi};
+use oedometer_soil::elementary::{exp, ln};
 
 /// Multiple of its residual that a right column may have in another world, and the least that it may have.
 const SPOILT: [f64; 2] = [3.0, 3e-4];
+/// Multiple of its residual that a column which is not explained may have in another world.
 /// Multiple of its residual that a column which is not explained may have in another world.
 const KEPT: f64 = 1.5;
 /// Errors below it do not tell explanations apart, and what is left below the other is next to nothing.
@@ -84,9 +85,8 @@ fn left(world: &World, given: &Given<'_>, in_units: bool) -> f64 {
         let itself = column.itself(&column.of_itself(&predicted));
         let as_it_is = column.misfit(&itself, 1.0, None).min(1.0);
         let of = |scale: &Scale| {
-            let mistakes = i32::from(!scale.asked.is_empty());
-            let [own, turned] = [1.0, -1.0].map(|sign| column.misfit(&itself, sign * scale.factor, None));
-            powi(PENALTY, mistakes) * own.min(PENALTY * turned)
+            let penalty: f64 = scale.asked.iter().map(|_| PENALTY).product();
+            penalty * column.misfit(&itself, scale.factor, None)
         };
         let others = column.scales.iter().filter(|scale| in_units && !scale.is_alone);
         ln(others.map(of).fold(as_it_is, f64::min) + FLOOR)
@@ -114,12 +114,8 @@ pub struct Explanation {
     world: World,
     pub of: Reading,
     pub readings: Vec<Option<Reading>>,
-    /// What others that are as good ask.
-    pub alternatives: Vec<String>,
-    /// The largest error that is left of a column that was wrong.
-    left: f64,
-    mistakes: usize,
-    fitted: usize,
+    /// All mistakes of the world and of columns, with the largest error that is left of a column that was wrong.
+    sum: Reading,
     open: usize,
 }
 
@@ -128,8 +124,6 @@ impl Explanation {
     fn of((world, of): (World, Reading), given: &Given<'_>, whole: &Given<'_>) -> Option<Self> {
         let is_own = of.count == 0;
         let predicted = world.predict(given, &given.times)?;
-        // A displacement that has a factor of its own, and a stiffness, cancel.
-        let is_stiff = world.parameters.soil.youngs_modulus != given.own.parameters.soil.youngs_modulus;
         let (mut all, mut plain, mut kept) = (Vec::new(), 0, 0);
         for (column, whole_column) in given.columns.iter().zip(&whole.columns) {
             let x = Exact::new(given, &world, column, &predicted);
@@ -146,8 +140,7 @@ impl Explanation {
             } else {
                 let is_near = column.misfit(&itself, 1.0, None) <= KEPT * column.residual;
                 kept += usize::from(column.residual <= MOST && is_near);
-                let is_read = !(column.is_zero() || is_stiff && !column.field.is_stress());
-                let mut readings = if is_read { accepted(&x, is_own) } else { Vec::new() };
+                let mut readings = if column.is_zero() { Vec::new() } else { accepted(&x, is_own) };
                 if is_own && !column.is_zero() {
                     readings.extend(patterns::of(whole_column, whole, readings.is_empty()));
                 }
@@ -160,49 +153,45 @@ impl Explanation {
         if !is_own && open > 0 && !is_of_most {
             return None;
         }
-        let readings: Vec<Option<Reading>> = (0..all.len()).map(|place| chosen(&all, place)).collect();
+        let readings: Vec<Option<Reading>> = all.iter().map(|readings| chosen(readings)).collect();
         let wrong = readings.iter().zip(&given.columns).filter(|(_, column)| !column.is_right());
         let left = wrong.filter_map(|(reading, _)| Some(reading.as_ref()?.left)).reduce(f64::max);
         // What columns share is one mistake.
         let mut once: Vec<&Reading> = readings.iter().flatten().collect();
         once.sort_by_key(|reading| &reading.key);
         once.dedup_by_key(|reading| &reading.key);
-        let mistakes = of.count + once.iter().map(|reading| reading.count).sum::<usize>();
-        let fitted = of.fitted + once.iter().map(|reading| reading.fitted).sum::<usize>();
-        let left = left.unwrap_or(1.0);
-        Some(Self { world, of, readings, alternatives: Vec::new(), left, mistakes, fitted, open })
-    }
-
-    /// Its cost, without what round-off tells apart.
-    fn cost(&self) -> f64 {
-        (1e6 * cost(self.left, self.mistakes, self.fitted)).round()
+        let mut sum = Reading { left: left.unwrap_or(1.0), ..of.clone() };
+        for reading in once {
+            sum.count += reading.count;
+            sum.fitted += reading.fitted;
+            sum.asked.extend(reading.asked.iter().filter(|_| is_own).cloned());
+        }
+        Some(Self { world, of, readings, sum, open })
     }
 
     /// Whether nothing is left to be explained.
     fn is_enough(&self) -> bool {
-        self.open == 0 && self.left <= CLEAR && self.mistakes <= 1 && self.world.clock[0] > 0.0
-    }
-
-    /// Whether another one is as good, with as many mistakes: of worlds that leave a column open, none is an alternative to
-    /// what explains each column by itself.
-    fn is_tied(&self, other: &Self) -> bool {
-        (other.open, other.mistakes, other.fitted) == (self.open, self.mistakes, self.fitted)
-            && (other.open == 0 || other.of.count == self.of.count)
-            && other.left <= AS_WELL * (self.left + FLOOR)
-    }
-
-    /// What it asks of all columns; of the scene's own world, of the readings.
-    fn asked(&self) -> String {
-        let readings = self.readings.iter().flatten();
-        let all: Vec<&Reading> = if self.of.count > 0 { vec![&self.of] } else { readings.collect() };
-        let mut asked: Vec<&str> = all.iter().flat_map(|of| &of.asked).map(|asked| &**asked).collect();
-        asked.dedup();
-        asked.join(", and ")
+        self.open == 0 && self.sum.left <= CLEAR && self.sum.count <= 1 && self.world.clock[0] > 0.0
     }
 }
 
-fn cost(left: f64, mistakes: usize, fitted: usize) -> f64 {
-    ln(left + FLOOR) + PER_MISTAKE * mistakes as f64 + PER_FIT * fitted as f64
+/// What it costs, without what round-off tells apart.
+fn cost(reading: &Reading) -> f64 {
+    let mistakes = PER_MISTAKE * reading.count as f64 + PER_FIT * reading.fitted as f64;
+    (1e6 * (ln(reading.left + FLOOR) + mistakes)).round()
+}
+
+/// The questions of others that are as good, with as many mistakes.
+fn as_good<'a>(best: &Reading, others: impl Iterator<Item = &'a Reading>) -> Vec<String> {
+    let is_tied = |other: &&Reading| {
+        (other.count, other.fitted) == (best.count, best.fitted)
+            && other.left <= AS_WELL * (best.left + FLOOR)
+            && other.asked != best.asked
+    };
+    let mut asked: Vec<String> = others.filter(is_tied).map(|other| other.asked.join(", and ")).collect();
+    asked.dedup();
+    asked.truncate(MOST_NAMES - 1);
+    asked
 }
 
 /// The best explanation of some of the samples; `whole` has all of them, for patterns. Of outputs that are only some of
@@ -212,7 +201,7 @@ pub fn explanation(given: &Given<'_>, whole: &Given<'_>, is_part: bool) -> Optio
     let mut all: Vec<Explanation> = Vec::new();
     let add = |all: &mut Vec<Explanation>, world: Option<(World, Reading)>| {
         all.extend(world.and_then(|world| Explanation::of(world, given, whole)));
-        all.sort_by(|a, b| a.open.cmp(&b.open).then(a.cost().total_cmp(&b.cost())));
+        all.sort_by(|a, b| a.open.cmp(&b.open).then(cost(&a.sum).total_cmp(&cost(&b.sum))));
     };
     add(&mut all, Some(own.clone()));
     // No number of all columns is wrong where one column is right.
@@ -223,7 +212,7 @@ pub fn explanation(given: &Given<'_>, whole: &Given<'_>, is_part: bool) -> Optio
         [false, true].into_iter().flat_map(|units| causes.iter().map(move |cause| (units, cause)))
     {
         let is_wanted = |best: &Explanation| match in_units {
-            true => cause.is_of_times && (best.open > 0 || best.mistakes > 1),
+            true => cause.is_of_times && (best.open > 0 || best.sum.count > 1),
             false => !best.is_enough(),
         };
         let is_fitted = !is_any_right && all.first().is_none_or(is_wanted);
@@ -235,40 +224,18 @@ pub fn explanation(given: &Given<'_>, whole: &Given<'_>, is_part: bool) -> Optio
         let turned = world_of(&UPSIDE_DOWN, &own, given, true);
         add(&mut all, turned.and_then(|turned| world_of(&CLOCK, &turned, given, true)));
     }
-    let wrong = given.columns.iter().filter(|column| !column.is_right()).count();
     let mut all = all.into_iter();
-    let mut best = all.next().filter(|best| best.open < wrong)?;
-    let mut asked: Vec<String> = all.filter(|other| best.is_tied(other)).map(|other| other.asked()).collect();
-    let own = best.asked();
-    asked.retain(|other| !other.is_empty() && *other != own);
-    asked.dedup();
-    asked.truncate(MOST_NAMES - 1);
-    best.alternatives = asked;
+    let mut best = all.next()?;
+    // Of worlds that leave a column open, none is an alternative to what explains each column by itself.
+    let is_alike =
+        |other: &Explanation| other.open == best.open && (other.open == 0 || other.of.count == best.of.count);
+    let others: Vec<Reading> = all.filter(is_alike).map(|other| other.sum).collect();
+    best.of.or = as_good(&best.sum, others.iter());
     Some(best)
 }
 
-/// The best of the readings of a column, with the questions of others that are as good. What another column has too
-/// counts half, since both are one mistake.
-fn chosen(all: &[Vec<Reading>], place: usize) -> Option<Reading> {
-    let is_shared = |reading: &Reading| {
-        let others = all.iter().enumerate().filter(|(other, _)| *other != place);
-        others.flat_map(|(_, readings)| readings).any(|other| other.key == reading.key)
-    };
-    let cost_of = |reading: &Reading| {
-        let weight = if is_shared(reading) { 0.5 } else { 1.0 };
-        ln(reading.left + FLOOR) + weight * (cost(1.0, reading.count, reading.fitted) - cost(1.0, 0, 0))
-    };
-    let mut best = all[place].iter().min_by(|a, b| cost_of(a).total_cmp(&cost_of(b)))?.clone();
-    let rank = |reading: &Reading| (reading.count, reading.fitted, is_shared(reading));
-    let is_tied =
-        |other: &&Reading| rank(other) == rank(&best) && other.left <= AS_WELL * (best.left + FLOOR);
-    let mut asked: Vec<String> =
-        all[place].iter().filter(is_tied).map(|other| other.asked.join(", and ")).collect();
-    let own = best.asked.join(", and ");
-    asked.retain(|other| *other != own);
-    if !asked.is_empty() {
-        asked.truncate(MOST_NAMES - 1);
-        best.asked = vec![format!("{own}, or {}", asked.join(", or "))];
-    }
-    Some(best)
+/// The best of the readings of a column, with the questions of others that are as good.
+fn chosen(readings: &[Reading]) -> Option<Reading> {
+    let best = readings.iter().min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
+    Some(Reading { or: as_good(best, readings.iter()), ..best.clone() })
 }
