@@ -139,24 +139,13 @@ const NOT_STRESS: &[Field] = &[Field::Pressure, Field::Up, Field::Along, Field::
 /// The standard atmosphere and a bar, Pa.
 const ATMOSPHERES: Number = Number::Named(&[101_325.0, 1e5]);
 /// A row with nothing to fit and nothing that it needs.
-const ROW: Row = Row {
-    of: P,
-    said: "the exact one",
-    asked: "",
-    holds: |x, _| x.own.clone(),
-    plus: None,
-    number: Number::None,
-    count: 1,
-    needs: &[],
-};
+#[rustfmt::skip]
+const ROW: Row = Row { of: P, said: "the exact one", asked: "", holds: |x, _| x.own.clone(), plus: None, number: Number::None, count: 1, needs: &[] };
 /// A row of other times.
 const LATER: Row = Row { needs: &[Need::Diffusion, Need::TwoOutputs, Need::OwnUnit], ..ROW };
 /// The same of a column beside one that is right.
-const BESIDE: Row = Row {
-    of: &Field::ALL,
-    needs: &[Need::Diffusion, Need::TwoOutputs, Need::OwnUnit, Need::OtherRight],
-    ..ROW
-};
+#[rustfmt::skip]
+const BESIDE: Row = Row { of: &Field::ALL, needs: &[Need::OtherRight, Need::Diffusion, Need::TwoOutputs, Need::OwnUnit], ..ROW };
 
 /// What one column may hold.
 #[rustfmt::skip]
@@ -177,9 +166,9 @@ pub const READINGS: &[Row] = &[
     Row { of: STRESS, said: "the exact strain", asked: "is the strain given instead",
         holds: |x, _| x.each(|at| x.strain(at)), needs: &[Need::OneSoil, Need::AnySign], ..ROW },
     Row { of: STRESS, said: "the exact porosity", asked: "is the porosity given instead, as it changes with the strain",
-        holds: |x, _| x.each(|at| (1.0 - x.soil.porosity) * x.strain(at)), plus: Some(|x, _, _| x.soil.porosity), needs: &[Need::OneSoil], ..ROW },
+        holds: |x, _| x.each(|at| (1.0 - x.parameters.soil.porosity) * x.strain(at)), plus: Some(|x, _, _| x.parameters.soil.porosity), needs: &[Need::OneSoil], ..ROW },
     Row { of: STRESS, said: "the exact void ratio", asked: "is the void ratio given instead",
-        holds: |x, _| x.each(|at| x.strain(at) / (1.0 - x.soil.porosity)), plus: Some(|x, _, _| x.soil.porosity / (1.0 - x.soil.porosity)),
+        holds: |x, _| x.each(|at| x.strain(at) / (1.0 - x.parameters.soil.porosity)), plus: Some(|x, _, _| x.parameters.soil.porosity / (1.0 - x.parameters.soil.porosity)),
         needs: &[Need::OneSoil], ..ROW },
     Row { said: "the exact one plus {} Pa", asked: "is it an absolute pressure, with that of the atmosphere left in",
         plus: Some(|_, _, constant| constant), number: ATMOSPHERES, ..ROW },
@@ -242,16 +231,9 @@ pub struct Cause {
     pub is_of_times: bool,
 }
 
-const CAUSE: Cause = Cause {
-    said: "",
-    asked: "",
-    is_possible: |_| true,
-    of: |_, own, _| own,
-    range: None,
-    names: |_| Vec::new(),
-    asked_of: |_, _| String::new(),
-    is_of_times: false,
-};
+#[rustfmt::skip]
+const CAUSE: Cause = Cause { said: "", asked: "", is_possible: |_| true, of: |_, own, _| own, range: None, names: |_| Vec::new(),
+    asked_of: |_, _| String::new(), is_of_times: false };
 /// A cause with a factor.
 const FACTOR: Cause = Cause { range: Some(|_, _| [1e-6, 1e6]), ..CAUSE };
 

@@ -7,13 +7,12 @@ use super::shown;
 use super::world::{Ends, Fields, World, early_parts};
 use oedometer_exact::ColumnParameters;
 use oedometer_soil::elementary::{exp, ln};
-use oedometer_soil::material::Material;
 
 /// Relative half of the step over which a rate is taken.
 const NEAR: f64 = 1e-3;
 /// Fewest values on which a number may be fitted, and the trials of a time.
 const FEWEST: usize = 4;
-const TRIALS: usize = 40;
+const TRIALS: usize = 30;
 
 /// What a row may look at: exact fields at the places of a column.
 pub struct Exact<'a> {
@@ -22,7 +21,6 @@ pub struct Exact<'a> {
     pub column: &'a Column,
     /// Those of the scene.
     pub parameters: &'a ColumnParameters,
-    pub soil: &'a Material,
     /// The column itself.
     pub own: Vec<f64>,
     pub pressure: Vec<f64>,
@@ -36,8 +34,7 @@ impl<'a> Exact<'a> {
         let of = |field: Field| column.of_field(predicted, field);
         let [pressure, stress, up] = [Field::Pressure, Field::EffectiveStress, Field::Up].map(of);
         let parameters = &given.own.parameters;
-        let (soil, own) = (&parameters.soil, column.of_itself(predicted));
-        Self { given, world, column, parameters, soil, own, pressure, stress, up }
+        Self { given, world, column, parameters, own: column.of_itself(predicted), pressure, stress, up }
     }
 
     /// A value for every place.
@@ -47,12 +44,12 @@ impl<'a> Exact<'a> {
 
     /// The strain of one soil, of which the stress is a multiple.
     pub fn strain(&self, at: usize) -> f64 {
-        self.stress[at] / self.soil.oedometric_modulus()
+        self.stress[at] / self.parameters.soil.oedometric_modulus()
     }
 
     /// Unit weight of the water, Pa/m.
     pub fn weight(&self) -> f64 {
-        self.soil.unit_weight_of_water()
+        self.parameters.soil.unit_weight_of_water()
     }
 
     /// The weight of the water between a place and the surface, Pa.

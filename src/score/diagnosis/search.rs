@@ -21,7 +21,7 @@ const PER_FIT: f64 = 1.2;
 /// Multiple of the least error up to which another explanation is as good.
 const AS_WELL: f64 = 1.5;
 /// Trials of a number over its range, and halvings of the step around the best.
-const TRIALS: usize = 60;
+const TRIALS: usize = 50;
 const HALVINGS: usize = 14;
 /// What a mistake of a column must gain in a fit.
 const PENALTY: f64 = 1.2;
@@ -198,29 +198,29 @@ fn as_good<'a>(best: &Reading, others: impl Iterator<Item = &'a Reading>) -> Vec
 /// the file the soil and the load are those of the others.
 pub fn explanation(given: &Given<'_>, whole: &Given<'_>, is_part: bool) -> Option<Explanation> {
     let own = (given.own.clone(), Reading::default());
-    let mut all: Vec<Explanation> = Vec::new();
+    let mut all = vec![Explanation::of(own.clone(), given, whole)?];
     let add = |all: &mut Vec<Explanation>, world: Option<(World, Reading)>| {
         all.extend(world.and_then(|world| Explanation::of(world, given, whole)));
         all.sort_by(|a, b| a.open.cmp(&b.open).then(cost(&a.sum).total_cmp(&cost(&b.sum))));
     };
-    add(&mut all, Some(own.clone()));
     // No number of all columns is wrong where one column is right.
     let is_any_right = given.columns.iter().any(Column::is_right);
     let is_possible = |cause: &&Cause| (!is_part || cause.is_of_times) && (cause.is_possible)(given);
     let causes: Vec<&Cause> = WORLDS.iter().filter(is_possible).collect();
-    for (in_units, cause) in
-        [false, true].into_iter().flat_map(|units| causes.iter().map(move |cause| (units, cause)))
-    {
-        let is_wanted = |best: &Explanation| match in_units {
-            true => cause.is_of_times && (best.open > 0 || best.sum.count > 1),
-            false => !best.is_enough(),
-        };
-        let is_fitted = !is_any_right && all.first().is_none_or(is_wanted);
-        if if cause.range.is_some() { is_fitted } else { !in_units } {
-            add(&mut all, world_of(cause, &own, given, in_units));
+    for in_units in [false, true] {
+        for cause in &causes {
+            let best = &all[0];
+            let is_fitted = if in_units {
+                cause.is_of_times && (best.open > 0 || best.sum.count > 1)
+            } else {
+                !best.is_enough()
+            };
+            if if cause.range.is_some() { is_fitted && !is_any_right } else { !in_units } {
+                add(&mut all, world_of(cause, &own, given, in_units));
+            }
         }
     }
-    if !is_part && all.first().is_none_or(|best| best.open > 0) {
+    if !is_part && all[0].open > 0 {
         let turned = world_of(&UPSIDE_DOWN, &own, given, true);
         add(&mut all, turned.and_then(|turned| world_of(&CLOCK, &turned, given, true)));
     }

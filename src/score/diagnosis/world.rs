@@ -85,9 +85,7 @@ impl World {
 
     /// Whether the body is a column that strains along its height alone.
     pub fn is_column(&self) -> bool {
-        use ReferenceKind::{LargeStrain, Layered, Terzaghi, TerzaghiIncompressible, XieLeo};
-        matches!(self.kind, Terzaghi | TerzaghiIncompressible | XieLeo | Layered | LargeStrain(_))
-            && !self.parameters.self_weight
+        self.is_slow() && self.kind.row().axis == Axis::OverDepth && !self.parameters.self_weight
     }
 
     /// Whether fields grow with the load.
@@ -99,11 +97,11 @@ impl World {
     fn time_factor(&self, seconds: f64) -> f64 {
         let factor = self.parameters.time_factor(self.clock[0] * seconds + self.clock[1]).max(0.0);
         let own = self.parameters.time_factor(seconds);
-        match self.kind {
-            ReferenceKind::LargeStrain(_) if factor > 0.0 => factor.clamp(STEPPED_EDGES[0], STEPPED_EDGES[1]),
-            _ if self.is_slow() && factor > 0.0 => factor.clamp(EDGES[0].min(own), EDGES[1].max(own)),
-            _ => factor,
-        }
+        let [first, last] = match self.kind {
+            ReferenceKind::LargeStrain(_) => STEPPED_EDGES,
+            _ => [EDGES[0].min(own), EDGES[1].max(own)],
+        };
+        if self.is_slow() && factor > 0.0 { factor.clamp(first, last) } else { factor }
     }
 
     /// What the world predicts for the samples of a result at times of its outputs, s; `None` where it has no solution.
@@ -149,13 +147,13 @@ impl World {
         };
         let (x, heights): (Vec<f64>, Vec<f64>) = set.heights.iter().enumerate().map(place).unzip();
         let distances = if set.distances.is_empty() { &[][..] } else { &x };
-        let at = |time: f64| {
-            ExactFields::of(solution, time, SamplePlaces { height, heights: &heights, distances })
-        };
-        let late = if self.is_coupled { time } else { EDGES[1] };
-        let ExactFields { effective_stress, mut displacement, mut horizontal_displacement, .. } =
-            at(late).ok()?;
-        let mut pressure = at(time).ok()?.pressure;
+        let places = SamplePlaces { height, heights: &heights, distances };
+        let at = |time: f64| ExactFields::of(solution, time, places).ok();
+        let ExactFields { mut pressure, effective_stress, mut displacement, mut horizontal_displacement } =
+            at(if self.is_coupled { time } else { EDGES[1] })?;
+        if !self.is_coupled {
+            pressure = at(time)?.pressure;
+        }
         let settlement = solution.settlement(time).ok()?;
         match self.ends {
             // A strain that is mirrored adds up from the other end.
@@ -169,13 +167,8 @@ impl World {
             let torn = pressure.iter_mut().zip(&heights).filter(|(_, y)| is_drained(**y));
             torn.for_each(|(pressure, _)| *pressure = f64::NAN);
         }
-        Some([
-            pressure,
-            effective_stress,
-            displacement,
-            horizontal_displacement,
-            vec![settlement; heights.len()],
-        ])
+        let settled = vec![settlement; heights.len()];
+        Some([pressure, effective_stress, displacement, horizontal_displacement, settled])
     }
 }
 
