@@ -83,12 +83,6 @@ fn told_of_runs(told: impl ExactSizeIterator<Item = Vec<String>>) -> String {
 
 /// What seems wrong with a run, or with some of its outputs.
 fn told_of(given: &Given<'_>, is_part: bool) -> Vec<String> {
-    let content = |column: &Column| patterns::unexplained(column, given).filter(|_| !is_part);
-    if let [column] = &given.columns[..]
-        && column.is_zero()
-    {
-        return Vec::from_iter(content(column));
-    }
     let Some(found) = given.thin().and_then(|thin| search::explanation(&thin, given, is_part)) else {
         return Vec::new();
     };
@@ -104,8 +98,8 @@ fn told_of(given: &Given<'_>, is_part: bool) -> Vec<String> {
         told.push(apart);
         return told;
     }
-    for column in open.into_iter().filter(|column| column.residual > column.mesh) {
-        told.extend(content(column).or_else(|| match is_world {
+    for column in open {
+        told.extend(patterns::unexplained(column, given).or_else(|| match is_world {
             _ if column.residual <= MOST => None,
             true => Some(format!("your {} does not match that: it is wrong in its own right", column.name)),
             false => patterns::place(column, given),
@@ -160,10 +154,10 @@ fn told_apart(columns: &[&Column], given: &Given<'_>) -> Option<String> {
     let begin = if there.is_empty() { "" } else { ": there " };
     let end = if there.contains("× the time") { "; are these outputs of another run?" } else { "" };
     let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
-    let (who, are) = (who(&names, "your"), if names.len() == 1 { "is" } else { "are" });
+    let who = who(&names);
     let [right, wrong] =
         [right, wrong].map(|outputs| listed(outputs.into_iter().map(|output| given.times[output])));
-    Some(format!("{who} {are} right at t = {right} s and wrong only at t = {wrong} s{begin}{there}{end}"))
+    Some(format!("{who} is right at t = {right} s and wrong only at t = {wrong} s{begin}{there}{end}"))
 }
 
 /// The sentences of an explanation, one for all columns that are read alike; of what they share first, its questions once.
@@ -188,16 +182,16 @@ fn sentences(found: &Explanation, given: &Given<'_>) -> Vec<String> {
         let shared = if place == 0 { &found.of } else { &none };
         let asked = [&of.asked[..], &shared.asked].concat().join(", and ");
         let asked = [&[asked][..], &of.or, &shared.or].concat().join(", or ");
-        format!("{} {}{}: {asked}?", who(&columns, "each of your"), of.said, found.of.said)
+        format!("{} {}{}: {asked}?", who(&columns), of.said, found.of.said)
     };
     groups.into_iter().enumerate().map(sentence).collect()
 }
 
 /// Columns by their names.
-fn who(names: &[&str], several: &str) -> String {
+fn who(names: &[&str]) -> String {
     match names.split_last() {
         Some((last, others)) if !others.is_empty() => {
-            format!("{several} {} and {last}", others.join(", "))
+            format!("each of your {} and {last}", others.join(", "))
         }
         _ => format!("your {}", names.concat()),
     }

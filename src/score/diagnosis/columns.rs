@@ -87,9 +87,8 @@ pub struct Column {
     pub distances: Vec<f64>,
     /// Number of the output of each value.
     pub outputs: Vec<usize>,
-    /// Its residual against the scene's own solution, and the error that its mesh explains.
+    /// Its residual against the scene's own solution.
     pub residual: f64,
-    pub mesh: f64,
     /// What a correction may leave.
     pub limit: f64,
     /// Whether another column is right.
@@ -313,8 +312,7 @@ impl<'a> Given<'a> {
         let right = residuals.iter().copied().filter(|residual| *residual <= RIGHT).reduce(f64::max);
         let most = right.map_or(MOST, |worst| MOST.min(CLEAN.max(AS_OTHERS * worst)));
         for (place, column) in columns.iter_mut().enumerate() {
-            let is_fine = column.residual < column.mesh || column.values.len() < FEW;
-            column.limit = most.min(if is_fine { CLEAN } else { SHARE } * column.residual);
+            column.limit = column.limit.min(most);
             let beside = right_beside(column.residual);
             let is_beside = |(other, residual): (usize, &f64)| other != place && *residual <= beside;
             column.is_other_right = residuals.iter().enumerate().any(is_beside);
@@ -331,7 +329,7 @@ impl<'a> Given<'a> {
         let [up, along] = if self.own.is_slab() { ["u_x", "u_y"] } else { ["u_y", "u_x"] };
         let name = ["p", "effective_stress", up, along, "settlement"][field as usize];
         let mut column = Column { field, name, scale, scales: scales(field, self), ..Column::default() };
-        let (mut first, mut rows) = (0, 2);
+        let (mut first, mut rows) = (0, 0);
         for set in &self.sets {
             let values = &set.values[field as usize];
             column.values.extend(values);
@@ -346,7 +344,9 @@ impl<'a> Given<'a> {
         }
         column.exact = column.of_itself(predicted);
         column.residual = column.own_residual(&column.exact);
-        column.mesh = if field == Field::Settlement { 0.0 } else { MESH / powi((rows - 1) as f64, 2) };
+        let is_of_mesh = rows > 1 && column.residual < MESH / powi((rows - 1) as f64, 2);
+        let share = if is_of_mesh || column.values.len() < FEW { CLEAN } else { SHARE };
+        column.limit = share * column.residual;
         column
     }
 

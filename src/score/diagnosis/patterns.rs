@@ -24,6 +24,9 @@ const ORDERED: f64 = 0.2;
 const IN_ONE_PLACE: f64 = 0.8;
 /// Correlation below which a column does not vary as the exact one.
 const UNLIKE: f64 = 0.5;
+const STABILISATION: &str =
+    "does its interpolation fit that of the displacement (inf-sup), or does it need a stabilisation";
+const MID_SIDE: &str = "are they mid-side nodes without a value, or is a value missing there";
 const OUTSIDE: &str = "does a probe lie outside, or is a value missing there";
 
 /// The patterns of a column in the scene's own world; another order where nothing else explains it.
@@ -70,10 +73,7 @@ fn blank(column: &Column, given: &Given<'_>) -> Option<Reading> {
         (_, Some(rows)) if rows.len() < 3 => {
             (all_of("y", rows, &lines(&column.heights, height), "m"), missing)
         }
-        _ if blank == 0.0 => {
-            (String::new(), "are they mid-side nodes without a value, or is a value missing there")
-        }
-        _ => (String::new(), missing),
+        _ => (String::new(), if blank == 0.0 { MID_SIDE } else { missing }),
     };
     let [value, blanks, seen] = [rounded(blank), blanks.len().to_string(), seen.len().to_string()];
     let said = format!(
@@ -91,7 +91,7 @@ fn checkerboard(column: &Column, given: &Given<'_>) -> Option<Reading> {
         return None;
     }
     let exact = &column.exact;
-    let (itself, off) = (column.itself(exact), column.beyond(exact, 1.0));
+    let off = column.beyond(exact, 1.0);
     let of = |(row, is_of_field, is_across): (usize, bool, bool)| {
         let part = |at: usize| {
             let across = if is_across { along.get(at).map_or(0, |number| number / row) } else { 0 };
@@ -99,25 +99,20 @@ fn checkerboard(column: &Column, given: &Given<'_>) -> Option<Reading> {
             if (up[at] / row + across).is_multiple_of(2) { size } else { -size }
         };
         let pattern: Vec<f64> = (0..exact.len()).map(part).collect();
-        let mut held = column.itself(exact);
-        let (mut largest, mut is_halved) = (0.0_f64, true);
+        let (mut rest, mut largest, mut is_halved) = (off.clone(), 0.0_f64, true);
         for output in column.own_outputs() {
             let share = column.factor(&off, &pattern, Some(output));
             let here = (0..exact.len()).filter(|at| share.is_finite() && column.outputs[*at] == output);
-            here.for_each(|at| held.values[at] += share * pattern[at]);
+            here.for_each(|at| rest[at] -= share * pattern[at]);
             largest = largest.max(share.abs());
-            let [before, after] = [&itself, &held].map(|held| column.misfit(held, 1.0, Some(output)));
-            is_halved &= after <= ALTERNATES * before;
+            is_halved &= column.size(&rest, Some(output)) <= ALTERNATES * column.size(&off, Some(output));
         }
         let of = if is_of_field { "of the exact one" } else { "of the load" };
-        let percent = shown(100.0 * largest);
+        let (percent, left) = (shown(100.0 * largest), column.size(&rest, None) / column.size(exact, None));
         let said = format!(
             "alternates from sample to sample by ± {percent} % {of} around the exact one, a checkerboard"
         );
-        let asked =
-            "does its interpolation fit that of the displacement (inf-sup), or does it need a stabilisation";
-        let left = column.misfit(&held, 1.0, None);
-        is_halved.then(|| reading(said, asked, [1, 1], left, column))
+        is_halved.then(|| reading(said, STABILISATION, [1, 1], left, column))
     };
     let ways = [(true, false), (true, true), (false, false), (false, true)];
     let all =
@@ -167,11 +162,10 @@ pub fn unexplained(column: &Column, given: &Given<'_>) -> Option<String> {
         column.factor(&varying, &exact, None) * column.size(&exact, None) / column.size(&varying, None);
     let is_unlike = values.len() >= FEW && alike.abs() < UNLIKE && place(column, given).is_none();
     let array = "is it the wrong array";
-    let told = if column.is_zero() && given.columns.len() > 1 {
-        format!("is 0 everywhere: {array}")
-    } else if column.is_zero() {
+    let told = if column.is_zero() {
         let cause = if column.field.is_stress() { END } else { START };
-        format!("is 0 everywhere: {array}, or {}", cause.asked)
+        let or = format!(", or {}", cause.asked);
+        format!("is 0 everywhere: {array}{}", if given.columns.len() == 1 { &or } else { "" })
     } else if values.len() > 1 && values.iter().all(|value| (value / first - 1.0).abs() <= 1e-9) {
         format!("is {} at all places and times: {array}", rounded(first))
     } else if outputs.iter().all(counts) {

@@ -22,7 +22,7 @@ const PER_FIT: f64 = 1.2;
 const AS_WELL: f64 = 1.5;
 /// Trials of a number over its range, and halvings of the step around the best.
 const TRIALS: usize = 50;
-const HALVINGS: usize = 14;
+const HALVINGS: usize = 16;
 /// What a mistake of a column must gain in a fit.
 const PENALTY: f64 = 1.2;
 /// Most names and alternatives that a sentence offers.
@@ -205,7 +205,10 @@ pub fn explanation(given: &Given<'_>, whole: &Given<'_>, is_part: bool) -> Optio
     };
     // No number of all columns is wrong where one column is right.
     let is_any_right = given.columns.iter().any(Column::is_right);
-    let is_possible = |cause: &&Cause| (!is_part || cause.is_of_times) && (cause.is_possible)(given);
+    // Of zeros alone nothing is told by another world.
+    let is_told = !matches!(&given.columns[..], [column] if column.is_zero());
+    let is_possible =
+        |cause: &&Cause| is_told && (!is_part || cause.is_of_times) && (cause.is_possible)(given);
     let causes: Vec<&Cause> = WORLDS.iter().filter(is_possible).collect();
     for in_units in [false, true] {
         for cause in &causes {

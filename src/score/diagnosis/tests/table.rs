@@ -234,7 +234,7 @@ fn the_structure_of_a_file_is_looked_at_before_anything_is_fitted() {
             twice,
             "there are 2 runs in one file, with other values at the same times: run 1 is right; in run 2 each of your p,",
         ),
-        (some, "are right at t = 4.088, 40.88 s and wrong only at t = 8.175, 81.75 s: there each of your p,"),
+        (some, "is right at t = 4.088, 40.88 s and wrong only at t = 8.175, 81.75 s: there each of your p,"),
     ] {
         let told = told(&states);
         assert!(told.len() == 1 && told[0].contains(words), "{words}: {told:?}");
