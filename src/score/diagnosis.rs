@@ -15,7 +15,7 @@ mod world;
 use crate::import::SampledState;
 use crate::import::mapping::Mapping;
 use crate::score::coverage::uneven_top;
-use columns::{CLEAN, Column, Field, Given, MOST, right_beside};
+use columns::{CLEAN, Column, Given, MOST, right_beside};
 use oedometer_exact::row::Axis;
 use oedometer_exact::{ColumnParameters, ReferenceKind};
 use oedometer_wording::rounded;
@@ -146,14 +146,13 @@ fn told_apart(columns: &[&Column], given: &Given<'_>) -> Option<String> {
     if right.is_empty() || wrong.is_empty() {
         return None;
     }
-    let fields: Vec<Field> = columns.iter().map(|column| column.field).collect();
-    let there = told_of(&given.at_outputs(&wrong, &fields)?, true).join("; ");
+    let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
+    let there = told_of(&given.at_outputs(&wrong, &names)?, true).join("; ");
     if worst <= MOST && there.is_empty() {
         return None;
     }
     let begin = if there.is_empty() { "" } else { ": there " };
     let end = if there.contains("× the time") { "; are these outputs of another run?" } else { "" };
-    let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
     let who = who(&names);
     let [right, wrong] =
         [right, wrong].map(|outputs| listed(outputs.into_iter().map(|output| given.times[output])));
@@ -162,29 +161,23 @@ fn told_apart(columns: &[&Column], given: &Given<'_>) -> Option<String> {
 
 /// The sentences of an explanation, one for all columns that are read alike; of what they share first, its questions once.
 fn sentences(found: &Explanation, given: &Given<'_>) -> Vec<String> {
-    let mut groups: Vec<(&Reading, Vec<&str>)> = Vec::new();
-    for (reading, column) in found.readings.iter().zip(&given.columns) {
-        let Some(of) = reading else {
-            continue;
-        };
-        // A column that is right takes part in what is said of all.
-        if of.count == 0 && (found.of.count == 0 || column.residual == 0.0) {
-            continue;
-        }
-        match groups.iter_mut().find(|(other, _)| (&other.said, &other.asked) == (&of.said, &of.asked)) {
-            Some((_, columns)) => columns.push(column.name),
-            None => groups.push((of, vec![column.name])),
-        }
-    }
-    groups.sort_by_key(|(of, _)| of.count);
+    // A column that is right takes part in what is said of all.
+    let is_told = |(reading, column): &(&Reading, &Column)| {
+        reading.count > 0 || found.of.count > 0 && column.residual > 0.0
+    };
+    let columns = given.columns.iter().zip(&found.readings);
+    let read = columns.filter_map(|(column, reading)| Some((reading.as_ref()?, column)));
+    let mut told: Vec<(&Reading, &Column)> = read.filter(is_told).collect();
+    told.sort_by_key(|(reading, _)| (reading.count, &reading.key));
     let none = Reading::default();
-    let sentence = |(place, (of, columns)): (usize, (&Reading, Vec<&str>))| {
-        let shared = if place == 0 { &found.of } else { &none };
+    let sentence = |(place, alike): (usize, &[(&Reading, &Column)])| {
+        let (of, shared) = (alike[0].0, if place == 0 { &found.of } else { &none });
         let asked = [&of.asked[..], &shared.asked].concat().join(", and ");
         let asked = [&[asked][..], &of.or, &shared.or].concat().join(", or ");
-        format!("{} {}{}: {asked}?", who(&columns), of.said, found.of.said)
+        let names: Vec<&str> = alike.iter().map(|(_, column)| column.name).collect();
+        format!("{} {}{}: {asked}?", who(&names), of.said, found.of.said)
     };
-    groups.into_iter().enumerate().map(sentence).collect()
+    told.chunk_by(|(a, _), (b, _)| a.key == b.key).enumerate().map(sentence).collect()
 }
 
 /// Columns by their names.

@@ -140,12 +140,6 @@ impl Column {
         Held { values: exact.to_vec(), varying: exact.to_vec(), floor: VANISHED * self.scale }
     }
 
-    /// The error of the values over the larger of both: that of a column as it is given.
-    pub fn own_residual(&self, exact: &[f64]) -> f64 {
-        let size = self.size(exact, None).max(self.size(&self.values, None)).max(VANISHED * self.scale);
-        self.size(&self.beyond(exact, 1.0), None) / size
-    }
-
     /// The error that a hypothesis with a factor of the file leaves at an output or at all, over what varies in it as the
     /// exact solution does; not a number where nothing does.
     pub fn misfit(&self, held: &Held, factor: f64, output: Option<usize>) -> f64 {
@@ -291,10 +285,10 @@ impl<'a> Given<'a> {
     }
 
     /// Some of the outputs, in the columns that are right there and some others.
-    pub fn at_outputs(&self, outputs: &[usize], fields: &[Field]) -> Option<Self> {
+    pub fn at_outputs(&self, outputs: &[usize], names: &[&str]) -> Option<Self> {
         let sets = self.sets.iter().filter(|set| outputs.contains(&set.output));
         let mut part = self.with(sets.cloned().collect())?;
-        part.columns.retain(|column| column.is_right() || fields.contains(&column.field));
+        part.columns.retain(|column| column.is_right() || names.contains(&column.name));
         Some(part)
     }
 
@@ -311,11 +305,9 @@ impl<'a> Given<'a> {
         let residuals: Vec<f64> = columns.iter().map(|column| column.residual).collect();
         let right = residuals.iter().copied().filter(|residual| *residual <= RIGHT).reduce(f64::max);
         let most = right.map_or(MOST, |worst| MOST.min(CLEAN.max(AS_OTHERS * worst)));
-        for (place, column) in columns.iter_mut().enumerate() {
+        for column in &mut columns {
             column.limit = column.limit.min(most);
-            let beside = right_beside(column.residual);
-            let is_beside = |(other, residual): (usize, &f64)| other != place && *residual <= beside;
-            column.is_other_right = residuals.iter().enumerate().any(is_beside);
+            column.is_other_right = residuals.iter().any(|other| *other <= right_beside(column.residual));
         }
         given.columns = columns;
         Some(given)
@@ -343,7 +335,7 @@ impl<'a> Given<'a> {
             }
         }
         column.exact = column.of_itself(predicted);
-        column.residual = column.own_residual(&column.exact);
+        column.residual = column.misfit(&column.itself(&column.exact), 1.0, None);
         let is_of_mesh = rows > 1 && column.residual < MESH / powi((rows - 1) as f64, 2);
         let share = if is_of_mesh || column.values.len() < FEW { CLEAN } else { SHARE };
         column.limit = share * column.residual;

@@ -4,11 +4,12 @@
 //! [`WORLDS`] concern all of them.
 
 use super::columns::{Column, Field, Given};
-use super::readings::Exact;
+use super::readings::{Exact, has_other_times};
 use super::world::{EDGES, Ends, World};
 use super::{digits, shown};
 use crate::import::mapping::units::{StressUnit, TimeUnit};
-use oedometer_exact::{Drainage, Reference, ReferenceKind};
+use oedometer_exact::ReferenceKind::{self, LargeStrain, XieLeo};
+use oedometer_exact::{Drainage, Reference};
 use oedometer_soil::elementary::powi;
 use oedometer_soil::layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
@@ -47,13 +48,18 @@ pub struct Scale {
 pub fn scales(field: Field, given: &Given<'_>) -> Vec<Scale> {
     let (units, parameters) = (&given.mapping.units, &given.own.parameters);
     let (soil, weight) = (&parameters.soil, parameters.soil.unit_weight_of_water());
-    let mut all = vec![Scale { factor: 1.0, asked: Vec::new(), is_alone: false }];
-    let mut add = |factor: f64, asked: String, is_alone: bool| {
+    let mut all: Vec<Scale> = Vec::new();
+    let mut add = |factor: f64, asked: &str, is_alone: bool| {
         let is_new = all.iter().all(|other| (factor / other.factor - 1.0).abs() > NAME);
-        if is_new && factor.is_normal() {
-            all.push(Scale { factor, asked: vec![asked], is_alone });
+        for (factor, sign) in
+            [(factor, ""), (-factor, SIGN)].into_iter().filter(|_| is_new && factor.is_normal())
+        {
+            let mut asked = vec![asked.to_owned(), sign.to_owned()];
+            asked.retain(|asked| !asked.is_empty());
+            all.push(Scale { factor, asked, is_alone });
         }
     };
+    add(1.0, "", false);
     let (table, own, name, whole) = if field.is_stress() {
         let unit = units.stress.unwrap_or(StressUnit::Pascal);
         (&STRESSES, unit.pascals(), unit.name(), ("load, p/q", parameters.load))
@@ -62,27 +68,26 @@ pub fn scales(field: Field, given: &Given<'_>) -> Vec<Scale> {
         (&LENGTHS, unit.metres(), unit.name(), ("final settlement", parameters.final_settlement()))
     };
     for (unit, si) in table {
-        add(own / si, format!("is it in {unit} where {name} is declared"), false);
+        add(own / si, &format!("is it in {unit} where {name} is declared"), false);
     }
     for (unit, metres) in LENGTHS.iter().take(3).filter(|_| field == Field::Pressure) {
-        add(own / metres / weight, format!("is it a head in {unit}, p/γ_w, where {name} is declared"), false);
+        add(
+            own / metres / weight,
+            &format!("is it a head in {unit}, p/γ_w, where {name} is declared"),
+            false,
+        );
     }
-    add(own / whole.1, format!("is it divided by the {}", whole.0), false);
-    add(2.0, format!("is it doubled {WHERE_WRITTEN}"), true);
-    add(0.5, format!("is it halved {WHERE_WRITTEN}"), true);
+    add(own / whole.1, &format!("is it divided by the {}", whole.0), false);
+    add(2.0, "is it doubled where it is written", true);
+    add(0.5, "is it halved where it is written", true);
     let (ratio, nu) = (soil.oedometric_modulus() / soil.youngs_modulus, soil.poissons_ratio);
     if field == Field::EffectiveStress {
-        add(nu / (1.0 - nu), "is it the horizontal component, σ_xx = ν/(1 − ν) σ_yy".to_owned(), true);
+        add(nu / (1.0 - nu), "is it the horizontal component, σ_xx = ν/(1 − ν) σ_yy", true);
     } else if field != Field::Pressure && parameters.soils.is_empty() {
-        add(ratio, "is E taken for E_oed where displacements are computed".to_owned(), true);
-        add(1.0 / ratio, "is E_oed taken for E where displacements are computed".to_owned(), true);
+        add(ratio, "is E taken for E_oed where displacements are computed", true);
+        add(1.0 / ratio, "is E_oed taken for E where displacements are computed", true);
     }
-    let turned = |scale: &Scale| {
-        let asked = [&scale.asked[..], &[SIGN.to_owned()]].concat();
-        Scale { factor: -scale.factor, asked, ..*scale }
-    };
-    let turned: Vec<Scale> = all.iter().map(turned).collect();
-    [all, turned].concat()
+    all
 }
 
 /// The number of a row.
@@ -97,20 +102,13 @@ pub enum Number {
     Time,
 }
 
-/// What a row needs beside its column.
+/// Which units and signs a row goes with.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Need {
-    /// Another column that is right; that, or next to nothing left.
-    OtherRight,
-    OtherRightOrClean,
-    TwoOutputs,
-    /// Fields that change by the diffusion of pressure, at any time without much work.
-    Diffusion,
-    /// One soil that strains along the height alone, in proportion to its stress.
-    OneSoil,
+pub enum Units {
+    All,
     /// No other unit or sign.
-    OwnUnit,
-    /// A sign that no column tells, because it is another quantity.
+    Own,
+    /// All, with a sign that no column tells, because it is another quantity.
     AnySign,
 }
 
@@ -126,7 +124,8 @@ pub struct Row {
     pub number: Number,
     /// Single mistakes in it.
     pub count: usize,
-    pub needs: &'static [Need],
+    pub units: Units,
+    pub is_possible: fn(&Exact<'_>) -> bool,
 }
 
 /// What to ask of a sign, and words of questions about a factor that may be the load's.
@@ -140,36 +139,36 @@ const NOT_STRESS: &[Field] = &[Field::Pressure, Field::Up, Field::Along, Field::
 const ATMOSPHERES: Number = Number::Named(&[101_325.0, 1e5]);
 /// A row with nothing to fit and nothing that it needs.
 #[rustfmt::skip]
-const ROW: Row = Row { of: P, said: "the exact one", asked: "", holds: |x, _| x.own.clone(), plus: None, number: Number::None, count: 1, needs: &[] };
-/// A row of other times.
-const LATER: Row = Row { needs: &[Need::Diffusion, Need::TwoOutputs, Need::OwnUnit], ..ROW };
+const ROW: Row = Row { of: P, said: "the exact one", asked: "", holds: |x, _| x.own.clone(), plus: None, number: Number::None, count: 1, units: Units::All,
+    is_possible: |_| true };
+/// A row of other times, which are computed at no great cost.
+const LATER: Row = Row { units: Units::Own, is_possible: has_other_times, ..ROW };
 /// The same of a column beside one that is right.
 #[rustfmt::skip]
-const BESIDE: Row = Row { of: &Field::ALL, needs: &[Need::OtherRight, Need::Diffusion, Need::TwoOutputs, Need::OwnUnit], ..ROW };
+const BESIDE: Row = Row { of: &Field::ALL, is_possible: |x| has_other_times(x) && x.column.is_other_right, ..LATER };
 
 /// What one column may hold.
 #[rustfmt::skip]
 pub const READINGS: &[Row] = &[
     Row { of: &Field::ALL, ..ROW },
     Row { of: &Field::ALL, said: "{} × the exact one at all times and places", asked: "is a factor missing where it is written",
-        holds: |x, factor| x.each(|at| factor * x.own[at]), number: Number::Linear, count: 2, needs: &[Need::OwnUnit, Need::OtherRightOrClean], ..ROW },
+        holds: |x, factor| x.each(|at| factor * x.own[at]), number: Number::Linear, count: 2, units: Units::Own, ..ROW },
     Row { said: "the exact effective stress", asked: "is it given instead of the pore pressure",
-        holds: |x, _| x.each(|at| -x.stress[at]), needs: &[Need::AnySign], ..ROW },
+        holds: |x, _| x.each(|at| -x.stress[at]), units: Units::AnySign, ..ROW },
     Row { said: "the exact total stress", asked: "is it given instead of the pore pressure",
-        holds: |x, _| x.each(|at| x.pressure[at] - x.stress[at]), needs: &[Need::AnySign], ..ROW },
+        holds: |x, _| x.each(|at| x.pressure[at] - x.stress[at]), units: Units::AnySign, ..ROW },
     Row { of: &[Field::EffectiveStress], said: "the exact pore pressure", asked: "is it given instead of the effective stress",
-        holds: |x, _| x.pressure.clone(), needs: &[Need::AnySign], ..ROW },
+        holds: |x, _| x.pressure.clone(), units: Units::AnySign, ..ROW },
     Row { of: &[Field::EffectiveStress], said: "the exact total stress", asked: "is the pore pressure left in",
         holds: |x, _| x.each(|at| x.stress[at] - x.pressure[at]), ..ROW },
     Row { said: "1 − p/q of the exact one", asked: "is a degree of consolidation given instead",
         holds: |x, _| x.each(|at| -x.own[at] / x.parameters.load), plus: Some(|_, _, _| 1.0), ..ROW },
     Row { of: STRESS, said: "the exact strain", asked: "is the strain given instead",
-        holds: |x, _| x.each(|at| x.strain(at)), needs: &[Need::OneSoil, Need::AnySign], ..ROW },
+        holds: |x, _| x.each(|at| x.strain(at)), units: Units::AnySign, ..ROW },
     Row { of: STRESS, said: "the exact porosity", asked: "is the porosity given instead, as it changes with the strain",
-        holds: |x, _| x.each(|at| (1.0 - x.parameters.soil.porosity) * x.strain(at)), plus: Some(|x, _, _| x.parameters.soil.porosity), needs: &[Need::OneSoil], ..ROW },
+        holds: |x, _| x.each(|at| (1.0 - x.parameters.soil.porosity) * x.strain(at)), plus: Some(|x, _, _| x.parameters.soil.porosity), ..ROW },
     Row { of: STRESS, said: "the exact void ratio", asked: "is the void ratio given instead",
-        holds: |x, _| x.each(|at| x.strain(at) / (1.0 - x.parameters.soil.porosity)), plus: Some(|x, _, _| x.parameters.soil.porosity / (1.0 - x.parameters.soil.porosity)),
-        needs: &[Need::OneSoil], ..ROW },
+        holds: |x, _| x.each(|at| x.strain(at) / (1.0 - x.parameters.soil.porosity)), plus: Some(|x, _, _| x.parameters.soil.porosity / (1.0 - x.parameters.soil.porosity)), ..ROW },
     Row { said: "the exact one plus {} Pa", asked: "is it an absolute pressure, with that of the atmosphere left in",
         plus: Some(|_, _, constant| constant), number: ATMOSPHERES, ..ROW },
     Row { said: "the exact one with the weight of the water", asked: "is the hydrostatic part left in",
@@ -189,7 +188,7 @@ pub const READINGS: &[Row] = &[
         plus: Some(|_, _, constant| constant), number: Number::Linear, ..ROW },
     Row { of: &[Field::Up], said: "the exact one plus the same at all times, {} m at the top",
         asked: "is the displacement of an earlier stage, such as self-weight, left in",
-        plus: Some(|x, at, top| top * x.column.heights[at] / x.parameters.height), number: Number::Linear, needs: &[Need::TwoOutputs, Need::OwnUnit], ..ROW },
+        plus: Some(|x, at, top| top * x.column.heights[at] / x.parameters.height), number: Number::Linear, ..LATER },
     Row { of: MOVED, said: "the exact one less that of {} s", asked: "is it counted from a later time, {} s, instead of the start of loading",
         holds: |x, moment| x.less(&x.at(|_| moment), |_| false), number: Number::Time, ..LATER },
     Row { of: MOVED, said: "the exact one less that of the first output", asked: "is it reset after the first output, as by a restart or a new stage",
@@ -209,7 +208,7 @@ pub const READINGS: &[Row] = &[
     Row { of: NOT_STRESS, said: "the rate of the exact one", asked: "is it the rate (velocity), not the total",
         holds: |x, _| x.rate(), ..LATER },
     Row { of: &Field::ALL, said: "the exact one upside down", asked: "is only this column written from the other end",
-        holds: |x, _| x.turned(), needs: &[Need::OwnUnit, Need::OtherRight], ..ROW },
+        holds: |x, _| x.turned(), units: Units::Own, is_possible: |x| x.column.is_other_right, ..ROW },
 ];
 
 /// Numbers with the questions that name them.
@@ -223,7 +222,7 @@ pub struct Cause {
     pub is_possible: fn(&Given<'_>) -> bool,
     pub of: fn(&Given<'_>, World, f64) -> World,
     /// Where a number is looked for, between the first and the last time; by decades where it is positive.
-    pub range: Option<fn(&Given<'_>, [f64; 2]) -> [f64; 2]>,
+    pub range: Option<fn(&Given<'_>) -> [f64; 2]>,
     pub names: fn(&Given<'_>) -> Names,
     /// What to ask of a number without a name.
     pub asked_of: fn(&Given<'_>, f64) -> String,
@@ -235,7 +234,7 @@ pub struct Cause {
 const CAUSE: Cause = Cause { said: "", asked: "", is_possible: |_| true, of: |_, own, _| own, range: None, names: |_| Vec::new(),
     asked_of: |_, _| String::new(), is_of_times: false };
 /// A cause with a factor.
-const FACTOR: Cause = Cause { range: Some(|_, _| [1e-6, 1e6]), ..CAUSE };
+const FACTOR: Cause = Cause { range: Some(|_| [1e-6, 1e6]), ..CAUSE };
 
 /// Places that are counted from the other end.
 #[rustfmt::skip]
@@ -256,13 +255,13 @@ pub const END: Cause = Cause { said: " of the end",
 #[rustfmt::skip]
 pub const CLOCK: Cause = Cause { said: " at {} × the time", is_possible: |given| given.own.is_slow(), is_of_times: true,
     of: |_, own, factor| World { clock: [factor, 0.0], ..own }, names: clocks, asked_of: is_clock,
-    range: Some(|given, [first, last]| [EDGES[0] / given.own.parameters.time_factor(last), EDGES[1] / given.own.parameters.time_factor(first)]), ..CAUSE };
+    range: Some(|given| [EDGES[0] / given.own.parameters.time_factor(given.span()[1]), EDGES[1] / given.own.parameters.time_factor(given.span()[0])]), ..CAUSE };
 
 /// One state at all outputs.
 #[rustfmt::skip]
 pub const ONE_STATE: Cause = Cause { said: " of {} s at all outputs",
     is_possible: |given| given.own.is_slow() && !given.own.kind.row().is_prepared && given.columns.iter().all(Column::stands_still),
-    of: |_, own, moment| World { clock: [0.0, moment], ..own }, range: Some(|given, _| [1e-6, 10.0].map(|factor| given.own.parameters.time(factor))),
+    of: |_, own, moment| World { clock: [0.0, moment], ..own }, range: Some(|given| [1e-6, 10.0].map(|factor| given.own.parameters.time(factor))),
     asked_of: |_, _| "is the same state written, or read, every time".to_owned(), ..CAUSE };
 
 /// What all columns may share.
@@ -297,21 +296,21 @@ pub const WORLDS: &[Cause] = &[
     Cause { said: " of another stiffness", asked: "are λ and μ exchanged", is_possible: |given| is_plane(given) || given.own.is_slab(),
         of: |_, own, _| own.with_soils(exchange_moduli), ..CAUSE },
     Cause { said: " of {} × the load", of: |_, mut own, factor| { own.parameters.load *= factor; own },
-        is_possible: |given| (!given.own.is_linear() || given.moves() && given.columns[0].field.is_stress()) && !given.own.kind.is_manufactured(),
+        is_possible: |given| (given.moves() && given.columns[0].field.is_stress() || matches!(given.own.kind, LargeStrain(_) | XieLeo)) && !given.own.kind.is_manufactured(),
         names: |_| [2.0, 0.5].map(|factor| (factor, is_load(factor))).to_vec(), asked_of: |_, factor| is_load(factor), ..FACTOR },
     ONE_STATE,
     CLOCK,
     Cause { said: " with {} × the stiffness", of: |_, own, factor| own.with_soils(|soil| soil.youngs_modulus *= factor),
-        is_possible: |given| given.own.is_slow() && given.moves() && !matches!(given.own.kind, ReferenceKind::LargeStrain(_)),
+        is_possible: |given| given.own.is_slow() && given.moves() && !matches!(given.own.kind, LargeStrain(_)),
         names: |given| [moduli(given), tens(3, "is E off by a power of ten, or in another unit")].concat(), asked_of: is_stiffness, ..FACTOR },
     Cause { said: " {} s {side}", is_of_times: true, of: |_, own, moment| World { clock: [1.0, moment], ..own },
-        is_possible: |given| given.own.is_slow() && !given.own.kind.row().is_prepared, range: Some(|_, [first, last]| [-0.95 * first, last]),
+        is_possible: |given| given.own.is_slow() && !given.own.kind.row().is_prepared, range: Some(|given| [-0.95 * given.span()[0], given.span()[1]]),
         asked_of: |_, moment| {
             let late = if moment < 0.0 { "late" } else { "early" };
             format!("do your times start at another moment, so that all are {} s too {late}", shown(moment.abs()))
         }, ..CAUSE },
     Cause { said: " under a load that rises over {} s", of: |_, own, ramp| World { ramp, ..own },
-        is_possible: |given| given.own.kind.row().adds_up && !given.own.parameters.self_weight, range: Some(|_, [first, last]| [0.05 * first, 10.0 * last]),
+        is_possible: |given| given.own.kind.row().adds_up && !given.own.parameters.self_weight, range: Some(|given| [0.05 * given.span()[0], 10.0 * given.span()[1]]),
         asked_of: |_, ramp| format!("does your load rise over {} s, in a ramp, whereas that of the problem is sudden", shown(ramp)), ..CAUSE },
     Cause { said: " of a skeleton without the pressure",
         asked: "is the pore pressure missing from the momentum balance, so that the skeleton carries the load at once",

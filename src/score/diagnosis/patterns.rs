@@ -6,7 +6,6 @@ use super::readings::Reading;
 use super::search::FLOOR;
 use super::{NO_MISTAKE, listed, shown};
 use crate::score::coverage::lines;
-use oedometer_soil::elementary::powi;
 use oedometer_wording::rounded;
 
 /// Most samples in a row that have one sign of an alternating pressure: those of a cell.
@@ -21,7 +20,7 @@ const WRONG: f64 = 3e-3;
 /// Share of the error that another order may leave.
 const ORDERED: f64 = 0.2;
 /// Share of an error that sits in one place, and its share by which those of all outputs may differ.
-const IN_ONE_PLACE: f64 = 0.8;
+const IN_ONE_PLACE: f64 = 0.9;
 /// Correlation below which a column does not vary as the exact one.
 const UNLIKE: f64 = 0.5;
 const STABILISATION: &str =
@@ -52,7 +51,9 @@ fn blank(column: &Column, given: &Given<'_>) -> Option<Reading> {
     let blank = *wrong.chunk_by(|a, b| a == b).max_by_key(|same| same.len())?.first()?;
     let blanks: Vec<usize> = seen.iter().copied().filter(|at| values[*at] == blank).collect();
     let mut held = column.itself(exact);
-    blanks.iter().for_each(|at| held.values[*at] = blank);
+    for at in &blanks {
+        held.values[*at] = blank;
+    }
     let left = column.accepts(&held, 1.0)?;
     if blanks.len() < 2 || 4 * (seen.len() - blanks.len()) < seen.len() {
         return None;
@@ -170,9 +171,7 @@ pub fn unexplained(column: &Column, given: &Given<'_>) -> Option<String> {
         format!("is {} at all places and times: {array}", rounded(first))
     } else if outputs.iter().all(counts) {
         format!("counts from {} by ones: are these node or cell numbers", rounded(first))
-    } else if column.is_other_right && column.stands_still() {
-        format!("is the same at all outputs and unlike the exact one at any time: {array}")
-    } else if column.is_other_right && is_unlike {
+    } else if column.is_other_right && (is_unlike || column.stands_still()) {
         format!("does not vary as the exact one: {array}")
     } else {
         return None;
@@ -184,10 +183,10 @@ pub fn unexplained(column: &Column, given: &Given<'_>) -> Option<String> {
 pub fn place(column: &Column, given: &Given<'_>) -> Option<String> {
     let off = column.beyond(&column.exact, 1.0);
     let height = given.own.parameters.height;
-    let power = |at: usize| powi(off[at] / column.scale, 2);
     let is_row = |row: &f64| {
-        let there = (0..off.len()).filter(|at| (column.heights[*at] - row).abs() < 1e-6 * height);
-        there.map(power).sum::<f64>() > IN_ONE_PLACE * (0..off.len()).map(power).sum::<f64>()
+        let of_row = |(off, y): (&f64, &f64)| if (y - row).abs() < 1e-6 * height { *off } else { 0.0 };
+        let there: Vec<f64> = off.iter().zip(&column.heights).map(of_row).collect();
+        column.size(&there, None) > IN_ONE_PLACE * column.size(&off, None)
     };
     let row = lines(&column.heights, height).into_iter().find(is_row).filter(|_| off.len() >= FEW)?;
     let percent = rounded((100.0 * column.residual).round());

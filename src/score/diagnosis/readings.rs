@@ -1,7 +1,7 @@
 //! Readings of one column: what it would hold by each row of the table, in each unit and with either sign.
 
-use super::columns::{CLEAN, Column, Field, Given, Held, about_mean};
-use super::hypotheses::{Need, Number, READINGS, Row, SIGN, Scale, WHERE_WRITTEN, is_load};
+use super::columns::{CLEAN, Column, FEW, Field, Given, Held, about_mean};
+use super::hypotheses::{Number, Row, SIGN, Scale, Units, WHERE_WRITTEN, is_load};
 use super::search::minimum;
 use super::shown;
 use super::world::{Ends, Fields, World, early_parts};
@@ -10,9 +10,6 @@ use oedometer_soil::elementary::{exp, ln};
 
 /// Relative half of the step over which a rate is taken.
 const NEAR: f64 = 1e-3;
-/// Fewest values on which a number may be fitted, and the trials of a time.
-const FEWEST: usize = 4;
-const TRIALS: usize = 30;
 
 /// What a row may look at: exact fields at the places of a column.
 pub struct Exact<'a> {
@@ -120,7 +117,7 @@ impl<'a> Exact<'a> {
         match row.number {
             Number::None => vec![1.0],
             Number::Named(numbers) => numbers.to_vec(),
-            _ if column.values.len() < FEWEST => Vec::new(),
+            _ if column.values.len() < FEW / 2 => Vec::new(),
             Number::Linear => {
                 let (none, one) = (off(0.0), off(1.0));
                 vec![column.factor(&none, &self.each(|at| none[at] - one[at]), None)]
@@ -128,10 +125,15 @@ impl<'a> Exact<'a> {
             Number::Time => {
                 let left = |power: f64| column.size(&off(exp(power)), None);
                 let [first, last] = self.given.span();
-                vec![exp(minimum(&left, [ln(1e-3 * first), ln(3.0 * last)], TRIALS).0)]
+                vec![exp(minimum(&left, [ln(1e-3 * first), ln(3.0 * last)]).0)]
             }
         }
     }
+}
+
+/// Whether a column has several outputs, and other times are computed at no great cost.
+pub fn has_other_times(x: &Exact<'_>) -> bool {
+    x.column.own_outputs().len() > 1 && x.world.is_slow() && !x.world.kind.row().is_prepared
 }
 
 /// A column, or all of them in a world, as it would be right.
@@ -151,43 +153,18 @@ pub struct Reading {
     pub left: f64,
 }
 
-impl Reading {
-    /// A column that matches the exact one.
-    pub fn plain(left: f64) -> Self {
-        Self { said: "matches the exact one".to_owned(), left, ..Self::default() }
-    }
-}
-
-/// All readings of a column that are accepted: of the table in the scene's own world, else units and signs alone.
-pub fn accepted(x: &Exact<'_>, is_own: bool) -> Vec<Reading> {
-    let rows = if is_own { READINGS } else { &READINGS[..1] };
-    rows.iter().flat_map(|row| of_row(x, row, is_own)).collect()
-}
-
-fn is_met(need: Need, x: &Exact<'_>) -> bool {
-    match need {
-        Need::OtherRight => x.column.is_other_right,
-        Need::Diffusion => x.world.is_slow() && !x.world.kind.row().is_prepared,
-        Need::TwoOutputs => x.column.own_outputs().len() > 1,
-        Need::OneSoil => x.given.own.is_column() && x.parameters.soils.is_empty(),
-        Need::OwnUnit | Need::AnySign | Need::OtherRightOrClean => true,
-    }
-}
-
 /// The readings of a row, one for each unit, sign and number that are accepted.
-fn of_row(x: &Exact<'_>, row: &Row, is_own: bool) -> Vec<Reading> {
+pub fn of_row(x: &Exact<'_>, row: &Row, is_own: bool) -> Vec<Reading> {
     let (column, mut all) = (x.column, Vec::new());
-    if !row.of.contains(&column.field) || !row.needs.iter().all(|need| is_met(*need, x)) {
+    if !row.of.contains(&column.field) || !(row.is_possible)(x) {
         return all;
     }
-    let needs = |need: Need| row.needs.contains(&need);
-    let is_tried = |scale: &&Scale| match scale.is_alone {
-        true => is_own && row.asked.is_empty(),
-        false => scale.asked.is_empty() || !needs(Need::OwnUnit),
+    let is_tried = |scale: &&Scale| {
+        (!scale.is_alone || is_own && row.asked.is_empty())
+            && (scale.asked.is_empty() || row.units != Units::Own)
     };
-    let is_sure = |left: &f64| {
-        !needs(Need::OtherRightOrClean) || column.is_other_right || *left <= CLEAN * column.residual
-    };
+    // Several mistakes are told where another column is right, or next to nothing is left.
+    let is_sure = |left: &f64| row.count == 1 || column.is_other_right || *left <= CLEAN * column.residual;
     for scale in column.scales.iter().filter(is_tried) {
         for number in x.numbers(row, scale.factor) {
             let left = column.accepts(&x.held(row, number), scale.factor).filter(is_sure);
@@ -196,20 +173,20 @@ fn of_row(x: &Exact<'_>, row: &Row, is_own: bool) -> Vec<Reading> {
             };
             let filled = |text: &str| text.replace("{}", &shown(number));
             let mut asked = [&[filled(row.asked)][..], &scale.asked].concat();
-            asked.retain(|asked| !asked.is_empty() && !(needs(Need::AnySign) && asked == SIGN));
+            asked.retain(|asked| !(asked.is_empty() || row.units == Units::AnySign && asked == SIGN));
             if asked.is_empty() {
                 continue;
             }
             // At small strain one column alone cannot tell the load from a factor of its own.
-            let is_factor = asked[0].ends_with(WHERE_WRITTEN);
-            if is_factor && x.given.columns.len() == 1 {
+            if asked[0].ends_with(WHERE_WRITTEN) && x.given.columns.len() == 1 {
                 asked[0] = format!("{}, or {}", is_load(scale.factor * number), asked[0]);
             }
             let said = match scale.factor {
                 1.0 => format!("matches {}", filled(row.said)),
                 factor => format!("is {} × {}", shown(factor), filled(row.said)),
             };
-            let is_alone = scale.is_alone || is_factor || needs(Need::OtherRight);
+            // What any column may have is of each by itself.
+            let is_alone = scale.is_alone || !row.asked.is_empty() && row.of.len() == Field::ALL.len();
             all.push(Reading {
                 key: format!("{said} {asked:?} {}", if is_alone { column.name } else { "" }),
                 said,

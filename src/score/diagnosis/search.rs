@@ -1,8 +1,8 @@
 //! The search: the explanation, a world with a reading of each column, that leaves least for the fewest mistakes.
 
 use super::columns::{Column, Given, MOST};
-use super::hypotheses::{CLOCK, Cause, NAME, ONE_STATE, Scale, UPSIDE_DOWN, WORLDS};
-use super::readings::{Exact, Reading, accepted};
+use super::hypotheses::{CLOCK, Cause, NAME, ONE_STATE, READINGS, Scale, UPSIDE_DOWN, WORLDS};
+use super::readings::{Exact, Reading, of_row};
 use super::world::World;
 use super::{patterns, shown};
 use oedometer_soil::elementary::{exp, ln};
@@ -10,21 +10,20 @@ use oedometer_soil::elementary::{exp, ln};
 /// Multiple of its residual that a right column may have in another world, and the least that it may have.
 const SPOILT: [f64; 2] = [3.0, 3e-4];
 /// Multiple of its residual that a column which is not explained may have in another world.
-/// Multiple of its residual that a column which is not explained may have in another world.
-const KEPT: f64 = 1.5;
 /// Errors below it do not tell explanations apart, and what is left below the other is next to nothing.
 pub const FLOOR: f64 = 1e-5;
 const CLEAR: f64 = 1e-3;
 /// Logarithm of how much better an explanation must be for a mistake more, and for a fitted number more.
 const PER_MISTAKE: f64 = 1.1;
 const PER_FIT: f64 = 1.2;
-/// Multiple of the least error up to which another explanation is as good.
+/// Multiple of the least error up to which another explanation is as good, and of its own that a column which is not
+/// explained has in another world.
 const AS_WELL: f64 = 1.5;
 /// Trials of a number over its range, and halvings of the step around the best.
 const TRIALS: usize = 50;
 const HALVINGS: usize = 16;
 /// What a mistake of a column must gain in a fit.
-const PENALTY: f64 = 1.2;
+const PENALTY: f64 = 3.0;
 /// Most names and alternatives that a sentence offers.
 const MOST_NAMES: usize = 3;
 
@@ -39,7 +38,7 @@ fn world_of(
     let with = |number: f64, asked: &str, fitted: usize| {
         let side = if number < 0.0 { "before" } else { "after" };
         let said = cause.said.replace("{}", &shown(number.abs())).replace("{side}", side);
-        let said = format!("{}{said}", before.said);
+        let said = before.said.clone() + &said;
         let asked = [&before.asked[..], &[asked.to_owned()]].concat();
         let (count, fitted) = (before.count + 1, before.fitted + fitted);
         Some((of(number), Reading { said, asked, count, fitted, ..Reading::default() }))
@@ -47,12 +46,12 @@ fn world_of(
     let Some(range) = cause.range else {
         return with(0.0, cause.asked, 0);
     };
-    let range = range(given, given.span());
+    let range = range(given);
     let is_log = range[0] > 0.0;
     let number = |at: f64| if is_log { exp(at) } else { at };
     let value = |at: f64| left(&of(number(at)), given, in_units);
     let ends = if is_log { range.map(ln) } else { range };
-    let (at, least) = minimum(&value, ends, TRIALS);
+    let (at, least) = minimum(&value, ends);
     let (fitted, bound) = (number(at), least + ln(AS_WELL));
     if [value(ends[0]), value(ends[1]), left(base, given, in_units)].iter().any(|other| *other <= bound) {
         return None;
@@ -95,13 +94,13 @@ fn left(world: &World, given: &Given<'_>, in_units: bool) -> f64 {
 }
 
 /// The place of the least value of a function over a range, with that value.
-pub fn minimum(value: &dyn Fn(f64) -> f64, [low, high]: [f64; 2], trials: usize) -> (f64, f64) {
+pub fn minimum(value: &dyn Fn(f64) -> f64, [low, high]: [f64; 2]) -> (f64, f64) {
     let better = |best: (f64, f64), at: f64| {
         let here = value(at);
         if here < best.1 { (at, here) } else { best }
     };
-    let mut step = (high - low) / trials as f64;
-    let mut best = (0..=trials).map(|trial| low + step * trial as f64).fold((low, f64::INFINITY), better);
+    let mut step = (high - low) / TRIALS as f64;
+    let mut best = (0..=TRIALS).map(|trial| low + step * trial as f64).fold((low, f64::INFINITY), better);
     for _ in 0..HALVINGS {
         step *= 0.5;
         best = [best.0 - step, best.0 + step].map(|at| at.clamp(low, high)).into_iter().fold(best, better);
@@ -124,23 +123,27 @@ impl Explanation {
     fn of((world, of): (World, Reading), given: &Given<'_>, whole: &Given<'_>) -> Option<Self> {
         let is_own = of.count == 0;
         let predicted = world.predict(given, &given.times)?;
+        let said = "matches the exact one";
+        let as_exact = |left: f64| vec![Reading { said: said.to_owned(), left, ..Reading::default() }];
+        let rows = if is_own { READINGS } else { &READINGS[..1] };
         let (mut all, mut plain, mut kept) = (Vec::new(), 0, 0);
         for (column, whole_column) in given.columns.iter().zip(&whole.columns) {
             let x = Exact::new(given, &world, column, &predicted);
-            let (itself, residual) = (column.itself(&x.own), column.own_residual(&x.own));
+            let itself = column.itself(&x.own);
+            let residual = column.misfit(&itself, 1.0, None);
             let as_it_is = column.accepts(&itself, 1.0).filter(|_| !is_own);
             if column.is_right() && !is_own && residual > SPOILT[1].max(SPOILT[0] * column.residual) {
                 return None;
             }
             all.push(if column.is_right() {
-                vec![Reading::plain(residual)]
+                as_exact(residual)
             } else if let Some(left) = as_it_is {
                 plain += 1;
-                vec![Reading::plain(left)]
+                as_exact(left)
             } else {
-                let is_near = column.misfit(&itself, 1.0, None) <= KEPT * column.residual;
-                kept += usize::from(column.residual <= MOST && is_near);
-                let mut readings = if column.is_zero() { Vec::new() } else { accepted(&x, is_own) };
+                kept += usize::from(column.residual <= MOST && residual <= AS_WELL * column.residual);
+                let rows = rows.iter().filter(|_| !column.is_zero());
+                let mut readings: Vec<Reading> = rows.flat_map(|row| of_row(&x, row, is_own)).collect();
                 if is_own && !column.is_zero() {
                     readings.extend(patterns::of(whole_column, whole, readings.is_empty()));
                 }
@@ -209,22 +212,15 @@ pub fn explanation(given: &Given<'_>, whole: &Given<'_>, is_part: bool) -> Optio
     let is_told = !matches!(&given.columns[..], [column] if column.is_zero());
     let is_possible =
         |cause: &&Cause| is_told && (!is_part || cause.is_of_times) && (cause.is_possible)(given);
-    let causes: Vec<&Cause> = WORLDS.iter().filter(is_possible).collect();
-    for in_units in [false, true] {
-        for cause in &causes {
-            let best = &all[0];
-            let is_fitted = if in_units {
-                cause.is_of_times && (best.open > 0 || best.sum.count > 1)
-            } else {
-                !best.is_enough()
-            };
-            if if cause.range.is_some() { is_fitted && !is_any_right } else { !in_units } {
-                add(&mut all, world_of(cause, &own, given, in_units));
-            }
+    for cause in WORLDS.iter().filter(is_possible) {
+        if cause.range.is_none() || !is_any_right && !all[0].is_enough() {
+            // Times go with other units.
+            let in_units = || cause.is_of_times.then(|| world_of(cause, &own, given, true)).flatten();
+            add(&mut all, world_of(cause, &own, given, false).or_else(in_units));
         }
     }
     if !is_part && all[0].open > 0 {
-        let turned = world_of(&UPSIDE_DOWN, &own, given, true);
+        let turned = world_of(&UPSIDE_DOWN, &own, given, false);
         add(&mut all, turned.and_then(|turned| world_of(&CLOCK, &turned, given, true)));
     }
     let mut all = all.into_iter();

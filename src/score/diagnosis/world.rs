@@ -10,9 +10,7 @@ use oedometer_soil::layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
 
 /// Time factors before which nothing has drained that samples show, and after which nothing changes.
-pub const EDGES: [f64; 2] = [1e-9, 40.0];
-/// [`EDGES`] of solutions that are computed step by step.
-const STEPPED_EDGES: [f64; 2] = [1e-8, 5.0];
+pub const EDGES: [f64; 2] = [1e-8, 10.0];
 
 /// Parts of an integral over time.
 const PARTS: u32 = 10;
@@ -88,19 +86,11 @@ impl World {
         self.is_slow() && self.kind.row().axis == Axis::OverDepth && !self.parameters.self_weight
     }
 
-    /// Whether fields grow with the load.
-    pub fn is_linear(&self) -> bool {
-        !matches!(self.kind, ReferenceKind::LargeStrain(_) | ReferenceKind::XieLeo)
-    }
-
     /// The time factor of a time, s, that the file has.
     fn time_factor(&self, seconds: f64) -> f64 {
         let factor = self.parameters.time_factor(self.clock[0] * seconds + self.clock[1]).max(0.0);
         let own = self.parameters.time_factor(seconds);
-        let [first, last] = match self.kind {
-            ReferenceKind::LargeStrain(_) => STEPPED_EDGES,
-            _ => [EDGES[0].min(own), EDGES[1].max(own)],
-        };
+        let [first, last] = [EDGES[0].min(own), EDGES[1].max(own)];
         if self.is_slow() && factor > 0.0 { factor.clamp(first, last) } else { factor }
     }
 
