@@ -124,10 +124,11 @@ fn step_numbers(states: &[&SampledState], given: &Given<'_>) -> Option<String> {
         (left <= CLEAN).then(|| digits(own.parameters.time_factor(time)))
     };
     let times: Option<Vec<String>> = states.iter().map(own_time).collect();
-    let [second, third] = [first + 1.0, first + 2.0];
     Some(format!(
-        "your times count outputs ({first}, {second}, {third}, …): are they step numbers instead of times? At T_v = {} all \
+        "your times count outputs ({first}, {}, {}, …): are they step numbers instead of times? At T_v = {} all \
          matches the exact solution",
+        first + 1.0,
+        first + 2.0,
         times?.join(", ")
     ))
 }
@@ -182,10 +183,8 @@ fn sentences(found: &Explanation, given: &Given<'_>) -> Vec<String> {
 
 /// Columns by their names.
 fn who(names: &[&str]) -> String {
-    match names.split_last() {
-        Some((last, others)) if !others.is_empty() => {
-            format!("each of your {} and {last}", others.join(", "))
-        }
+    match names {
+        [others @ .., last] if !others.is_empty() => format!("each of your {} and {last}", others.join(", ")),
         _ => format!("your {}", names.concat()),
     }
 }

@@ -198,23 +198,17 @@ pub struct Set {
 }
 
 impl Set {
-    /// The samples of a state at its places, with those beside them, and its settlement at the surface.
-    fn all_of(output: usize, state: &SampledState, height: f64) -> Vec<Self> {
-        let of = |state: &SampledState| {
-            let SampledState { pressure, effective_stress, displacement, horizontal_displacement, .. } =
-                state.clone();
-            let values = [pressure, effective_stress, displacement, horizontal_displacement, Vec::new()];
-            let (heights, distances) = (state.initial_height.clone(), state.initial_distance.clone());
-            Self { output, heights, distances, values }
-        };
-        let beside = state.beside.iter().map(|beside| &beside.state);
-        let mut all: Vec<Self> = std::iter::once(state).chain(beside).map(of).collect();
-        if let Some(up) = state.surface_displacement {
-            let mut surface = of(&SampledState { initial_height: vec![height], ..SampledState::default() });
-            surface.values[Field::Settlement as usize] = vec![-up];
-            all.push(surface);
+    /// The samples of a state; a settlement alone stands at the surface.
+    fn of(output: usize, state: &SampledState, height: f64) -> Self {
+        let SampledState { pressure, effective_stress, displacement, horizontal_displacement, .. } =
+            state.clone();
+        let settlement = state.surface_displacement.map(|up| -up).into_iter().collect();
+        let values = [pressure, effective_stress, displacement, horizontal_displacement, settlement];
+        let (mut heights, distances) = (state.initial_height.clone(), state.initial_distance.clone());
+        if heights.is_empty() {
+            heights.push(height);
         }
-        all
+        Self { output, heights, distances, values }
     }
 
     /// Some of the samples, spread over all of them without a period: a mistake is in all samples, and every trial evaluates
@@ -264,9 +258,12 @@ impl<'a> Given<'a> {
             sets: Vec::new(),
             columns: Vec::new(),
         };
-        let height = own.parameters.height;
-        let of_output = |(number, place): (usize, usize)| Set::all_of(number, states[place], height);
-        let sets = places().enumerate().flat_map(of_output).map(|set| set.thinned(SAMPLES[0]));
+        let of_output = |(number, place): (usize, usize)| {
+            let beside = states[place].beside.iter().map(|beside| &beside.state);
+            let all = std::iter::once(states[place]).chain(beside);
+            all.map(move |state| Set::of(number, state, own.parameters.height).thinned(SAMPLES[0]))
+        };
+        let sets = places().enumerate().flat_map(of_output);
         given.with(sets.collect())
     }
 
@@ -321,7 +318,7 @@ impl<'a> Given<'a> {
         let [up, along] = if self.own.is_slab() { ["u_x", "u_y"] } else { ["u_y", "u_x"] };
         let name = ["p", "effective_stress", up, along, "settlement"][field as usize];
         let mut column = Column { field, name, scale, scales: scales(field, self), ..Column::default() };
-        let (mut first, mut rows) = (0, 0);
+        let (mut first, mut rows) = (0, 2);
         for set in &self.sets {
             let values = &set.values[field as usize];
             column.values.extend(values);
@@ -336,7 +333,7 @@ impl<'a> Given<'a> {
         }
         column.exact = column.of_itself(predicted);
         column.residual = column.misfit(&column.itself(&column.exact), 1.0, None);
-        let is_of_mesh = rows > 1 && column.residual < MESH / powi((rows - 1) as f64, 2);
+        let is_of_mesh = field != Field::Settlement && column.residual < MESH / powi((rows - 1) as f64, 2);
         let share = if is_of_mesh || column.values.len() < FEW { CLEAN } else { SHARE };
         column.limit = share * column.residual;
         column

@@ -28,10 +28,9 @@ const STABILISATION: &str =
 const MID_SIDE: &str = "are they mid-side nodes without a value, or is a value missing there";
 const OUTSIDE: &str = "does a probe lie outside, or is a value missing there";
 
-/// The patterns of a column in the scene's own world; another order where nothing else explains it.
-pub fn of(column: &Column, given: &Given<'_>, is_open: bool) -> Vec<Reading> {
-    let order = || order(column).filter(|_| is_open);
-    [blank(column, given), checkerboard(column, given), order()].into_iter().flatten().collect()
+/// The patterns of a column in the scene's own world.
+pub fn of(column: &Column, given: &Given<'_>) -> Vec<Reading> {
+    [blank(column, given), checkerboard(column, given), order(column)].into_iter().flatten().collect()
 }
 
 fn reading(said: String, asked: &str, [count, fitted]: [usize; 2], left: f64, column: &Column) -> Reading {
@@ -188,9 +187,10 @@ pub fn place(column: &Column, given: &Given<'_>) -> Option<String> {
         let there: Vec<f64> = off.iter().zip(&column.heights).map(of_row).collect();
         column.size(&there, None) > IN_ONE_PLACE * column.size(&off, None)
     };
-    let row = lines(&column.heights, height).into_iter().find(is_row).filter(|_| off.len() >= FEW)?;
+    let rows = lines(&column.heights, height);
+    let row = rows.iter().find(|row| off.len() >= FEW && rows.len() > 1 && is_row(row))?;
     let percent = rounded((100.0 * column.residual).round());
-    let at = rounded(row);
+    let at = rounded(*row);
     Some(format!(
         "your {} is off by {percent} %, and {NO_MISTAKE}: nearly all of it sits at y = {at} m",
         column.name

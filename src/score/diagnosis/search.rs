@@ -145,7 +145,7 @@ impl Explanation {
                 let rows = rows.iter().filter(|_| !column.is_zero());
                 let mut readings: Vec<Reading> = rows.flat_map(|row| of_row(&x, row, is_own)).collect();
                 if is_own && !column.is_zero() {
-                    readings.extend(patterns::of(whole_column, whole, readings.is_empty()));
+                    readings.extend(patterns::of(whole_column, whole));
                 }
                 readings
             });
@@ -170,11 +170,6 @@ impl Explanation {
             sum.asked.extend(reading.asked.iter().filter(|_| is_own).cloned());
         }
         Some(Self { world, of, readings, sum, open })
-    }
-
-    /// Whether nothing is left to be explained.
-    fn is_enough(&self) -> bool {
-        self.open == 0 && self.sum.left <= CLEAR && self.sum.count <= 1 && self.world.clock[0] > 0.0
     }
 }
 
@@ -213,7 +208,9 @@ pub fn explanation(given: &Given<'_>, whole: &Given<'_>, is_part: bool) -> Optio
     let is_possible =
         |cause: &&Cause| is_told && (!is_part || cause.is_of_times) && (cause.is_possible)(given);
     for cause in WORLDS.iter().filter(is_possible) {
-        if cause.range.is_none() || !is_any_right && !all[0].is_enough() {
+        let Explanation { world, sum, open, .. } = &all[0];
+        let is_enough = *open == 0 && sum.left <= CLEAR && sum.count <= 1 && world.clock[0] > 0.0;
+        if cause.range.is_none() || !(is_any_right || is_enough) {
             // Times go with other units.
             let in_units = || cause.is_of_times.then(|| world_of(cause, &own, given, true)).flatten();
             add(&mut all, world_of(cause, &own, given, false).or_else(in_units));
