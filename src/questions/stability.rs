@@ -125,15 +125,11 @@ mod tests {
             for (number, record) in records.iter_mut().enumerate() {
                 record.stability = Some(CriticalStep {
                     predicted: 2.0,
-                    creeping_from: None,
-                    unknown: None,
                     observed: Some(2.0 * if number == place { worst } else { 0.9 }),
                     wave_limit: 4.0,
                     drag_limit: 8.0,
                     combined_limit: 3.0,
-                    probes: Vec::new(),
-                    resolution: None,
-                    asymmetry: None,
+                    ..CriticalStep::default()
                 });
             }
             let found = ask(&[StudyResults::new(&study, &records, Tier::Full)]).expect("searched");

@@ -65,13 +65,18 @@ impl Solved {
 
     /// The same by a kernel.
     pub fn by(options: &Options, kernel: Kernel) -> Self {
+        Self::within(options, kernel, LONGEST)
+    }
+
+    /// The same where it takes at most so many estimated seconds.
+    pub fn within(options: &Options, kernel: Kernel, longest: f64) -> Self {
         let study = match catch_unwind(AssertUnwindSafe(|| options.study())) {
             Ok(Ok(study)) => study,
             Ok(Err(told)) => return Self::without_record(End::Refused(told)),
             Err(_) => return Self::without_record(End::Panicked),
         };
         let case = &study.planned[0].case;
-        if estimated_seconds(case) > LONGEST {
+        if estimated_seconds(case) > longest {
             return Self::without_record(End::TooLong);
         }
         let run = || run_case(case, &study.references, kernel, false, &|_, _| true);

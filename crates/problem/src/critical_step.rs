@@ -43,6 +43,9 @@ pub struct CriticalStep {
     /// Half of the bracket that is left of the search, over the observed step: a smaller difference is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub resolution: Option<f64>,
+    /// Share of the predicted step whose run was tried and ends, where points deform: a twentieth below the observed one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reliable_share: Option<f64>,
     /// `h/c` with the fastest undamped wave, s.
     pub wave_limit: f64,
     /// Limit of explicit drag alone, s.

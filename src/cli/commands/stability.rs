@@ -105,21 +105,19 @@ fn contradiction(case: &Case, found: &CriticalStep) -> String {
     let Some(share) = found.observed.map(|observed| observed / found.predicted) else {
         return format!("{label}: no run near the predicted step shows a limit");
     };
-    if share >= 1.0 - AGREEMENT {
+    let Some(reliable) = found.reliable_share.filter(|_| share < 1.0 - AGREEMENT) else {
         let at =
             found.probes.iter().find(|probe| !probe.is_as_predicted()).map_or(share, |probe| probe.share);
         return format!("{label}: the run at {at} of the predicted step contradicts the prediction");
-    }
+    };
     let why = if case.configuration().moves_points() {
         "points cross cells, and the prediction is for their initial positions: "
     } else {
         ""
     };
-    // Rounded down: a share that runs.
-    let safe = (95.0 * share).floor() / 100.0;
     format!(
-        "{label}: {why}runs with up to {share:.2} of the predicted step reach their end, so use `solve` \
-         with `--time-step stable={safe}`"
+        "{label}: {why}`solve` with `--time-step stable={reliable}` runs to its end, and of larger steps up to \
+         the predicted one some do not"
     )
 }
 
@@ -212,6 +210,7 @@ mod tests {
         CriticalStep {
             predicted: 2.0,
             observed,
+            reliable_share: observed.map(|observed| 0.47 * observed),
             wave_limit: 4.0,
             drag_limit: 8.0,
             combined_limit: 3.0,
@@ -236,8 +235,8 @@ mod tests {
             let label = records[place].case.label();
             records[place].stability = Some(found(Some(1.0)));
             let half = format!(
-                "{}: runs with up to 0.50 of the predicted step reach their end, so use `solve` with \
-                 `--time-step stable=0.47`",
+                "{}: `solve` with `--time-step stable=0.47` runs to its end, and of larger steps up to the predicted \
+                 one some do not",
                 records[place].case.label_without_step()
             );
             assert_eq!(told(&records), Err((Exit::VerdictFailed, half)), "{place}");

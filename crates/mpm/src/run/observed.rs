@@ -133,12 +133,14 @@ impl<'a, const D: usize> SharesOfRuns<'a, D> {
         Self { problem, settings, prediction, end, most_steps, observer }
     }
 
-    /// The critical step: predicted the smallest of the run, observed the largest share of it under which the run ends.
+    /// The critical step: predicted the smallest of the run, observed the largest share of it under which runs end, with a
+    /// smaller one that was tried too.
     fn critical_step(&self) -> Result<CriticalStep, Stopped> {
         let runs = SHARES.map(|share| self.run(share));
         let [below, above] = runs;
         let runs = [below?, above?];
         let (observed, smallest) = self.observed_share(&runs)?;
+        let reliable_share = observed.map(|[low, _]| reliable_share(low));
         let probe = |(share, run): (f64, RunOfShare)| Probe {
             share,
             step: share * smallest,
@@ -151,6 +153,7 @@ impl<'a, const D: usize> SharesOfRuns<'a, D> {
             predicted: smallest,
             unknown: self.prediction.growing.map(|growing| growing.to_string()),
             observed: observed.map(|[low, high]| 0.5 * (low + high) * smallest),
+            reliable_share,
             resolution: observed.map(|[low, high]| (high - low) / (high + low)),
             probes: SHARES.into_iter().zip(runs).map(probe).collect(),
             ..by_formula(self.problem, self.settings)
@@ -158,33 +161,38 @@ impl<'a, const D: usize> SharesOfRuns<'a, D> {
     }
 
     /// Shares between which runs begin to fail, where there are any, and the smallest critical step of the run of the largest
-    /// share that ends.
-    fn observed_share(&self, probes: &[RunOfShare; 2]) -> Result<(Option<[f64; 2]>, f64), Stopped> {
+    /// share that ends. While a point crosses cells a mode may grow, and fade before it shows: of two shares that run a smaller
+    /// one may fail, and the search goes on below it.
+    fn observed_share(&self, [below, above]: &[RunOfShare; 2]) -> Result<(Option<[f64; 2]>, f64), Stopped> {
         let [mut low, mut high] = SHARES;
-        let [below, above] = probes;
-        let mut smallest = below.smallest;
         if above.failure.is_none() {
             return Ok((None, above.smallest));
         }
-        let mut runs = below.failure.is_none();
-        while !runs {
-            (high, low) = (low, 0.5 * low);
-            if low < LEAST_SHARE {
-                return Ok((None, smallest));
+        let (mut runs, mut smallest) = (below.failure.is_none(), below.smallest);
+        loop {
+            while !runs {
+                (high, low) = (low, 0.5 * low);
+                if low < LEAST_SHARE {
+                    return Ok((None, smallest));
+                }
+                let run = self.run(low)?;
+                (runs, smallest) = (run.failure.is_none(), run.smallest);
             }
-            let run = self.run(low)?;
-            (runs, smallest) = (run.failure.is_none(), run.smallest);
-        }
-        while high - low > SHARE_RESOLUTION * low {
-            let middle = 0.5 * (low + high);
-            let run = self.run(middle)?;
-            if run.failure.is_none() {
-                (low, smallest) = (middle, run.smallest);
-            } else {
-                high = middle;
+            while high - low > SHARE_RESOLUTION * low {
+                let middle = 0.5 * (low + high);
+                let run = self.run(middle)?;
+                if run.failure.is_none() {
+                    (low, smallest) = (middle, run.smallest);
+                } else {
+                    high = middle;
+                }
             }
+            let reliable = reliable_share(low);
+            if self.run(reliable)?.failure.is_none() {
+                return Ok((Some([low, high]), smallest));
+            }
+            (low, runs) = (reliable, false);
         }
-        Ok((Some([low, high]), smallest))
     }
 
     /// The run that a user makes with steps of this share: to the end of the scene, or as far as growth shows.
@@ -203,6 +211,11 @@ impl<'a, const D: usize> SharesOfRuns<'a, D> {
             failure: failure_of(outcome.status)?,
         })
     }
+}
+
+/// The share that is named beside the largest under which a run ended: a twentieth below it, in hundredths.
+fn reliable_share(largest: f64) -> f64 {
+    (95.0 * largest).floor() / 100.0
 }
 
 /// Largest step that runs, s, and half of the bracket that is left of the bisection, over it; none where no step near the
@@ -369,6 +382,8 @@ mod tests {
             let found =
                 critical_step(&problem, &settings, end, 1 << 18, &|_, _| true).expect("nobody stops it");
             let share = found.observed.expect("a limit") / found.predicted;
+            let reliable = found.reliable_share.expect("a limit");
+            assert!((0.0..0.011).contains(&(0.95 * share - reliable)), "{name}: {reliable} below {share}");
             assert!((least..=most).contains(&share), "{name}: {share} of {found:?}");
             let start = predict_for_run(&problem, &settings).critical_step;
             assert!(
@@ -381,7 +396,7 @@ mod tests {
                     Schedule { time_step: TimeStep::Stable(share), ..schedule_of(&settings, end, start) };
                 run(problem.clone(), &schedule, &|_, _| true).status == RunStatus::Ok
             };
-            assert_eq!([0.95, above].map(|of| runs(of * share)), [true, false], "{name}");
+            assert_eq!([reliable, above * share].map(runs), [true, false], "{name}");
             assert_eq!(
                 found.probes[0].failure.is_none(),
                 runs(SHARES[0]),
