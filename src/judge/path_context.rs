@@ -29,7 +29,7 @@ impl Path<'_> {
             formal_order: (self.axis == Axis::Cells).then(|| formal_order(case, measure)).flatten(),
             round_off: Some(self.round_off(measure)),
             tolerance: Some(if case.has_integrator() { ITERATIONS } else { SINGLE_PRECISION }),
-            reference_accuracy: used.map(|used| used.tail_bound),
+            reference_accuracy: used.map(|used| used.bound_at(&finest.case, measure.time_factor)),
             limiters: self.limiters(measure),
             mobility: self.mobility(measure),
             signed: self.signed(measure),

@@ -11,6 +11,7 @@ use crate::measure::theory::known_reference;
 use crate::record::{
     AttachedRun, Balance, ErrorRow, HistoryRow, Provenance, Record, ReferenceUse, SCHEMA, Status,
 };
+use oedometer_exact::solution::ROUND_OFF;
 use oedometer_exact::{ExactError, Reference, ReferenceKind};
 use oedometer_problem::outcome::{Counters, Energy, HistoryPoint, StepSizes};
 use oedometer_problem::snapshot::Snapshot;
@@ -178,14 +179,17 @@ impl Results<'_> {
 /// When it refuses a time.
 fn reference_use(case: &Case, reference: &Reference) -> Result<ReferenceUse, ExactError> {
     let does_not_hold = inertia_rules(case, reference.kind());
-    let mut entry =
-        ReferenceUse { name: reference.name().to_owned(), terms: 0, tail_bound: 0.0, does_not_hold };
+    let (mut terms, mut tail_bound, mut tail_bounds) = (0, 0.0, Vec::new());
     for time_factor in case.time_factors.iter() {
         let accuracy = reference.accuracy(*time_factor)?;
-        entry.terms = entry.terms.max(accuracy.terms);
-        entry.tail_bound = larger(entry.tail_bound, accuracy.bound());
+        terms = terms.max(accuracy.terms);
+        tail_bound = larger(tail_bound, accuracy.bound());
+        tail_bounds.push(accuracy.bound());
     }
-    Ok(entry)
+    if tail_bound <= ROUND_OFF || tail_bounds.iter().all(|bound| *bound == tail_bound) {
+        tail_bounds.clear();
+    }
+    Ok(ReferenceUse { name: reference.name().to_owned(), terms, tail_bound, tail_bounds, does_not_hold })
 }
 
 #[cfg(test)]
@@ -194,12 +198,12 @@ mod tests {
 
     #[test]
     fn a_reference_is_as_accurate_as_at_its_worst_output_wherever_that_stands() {
-        let mut case = Case::seed(crate::case::Task::Solve, &oedometer_scenes::TERZAGHI);
-        let mut times = [1e-4, 0.1, 1.0];
+        let mut case = Case::seed(crate::case::Task::Solve, &oedometer_scenes::DYNAMIC_COLUMN);
+        let mut times = [1e-5, 1e-4, 1e-2];
         let bounds = |case: &Case| -> (Vec<f64>, ReferenceUse) {
             let parameters = column_parameters(&case.column, &case.material);
-            let reference =
-                Reference::new(ReferenceKind::Terzaghi, &parameters, &case.time_factors).expect("a theory");
+            let reference = Reference::new(ReferenceKind::DynamicColumn, &parameters, &case.time_factors)
+                .expect("a theory");
             let bound = |time: &f64| reference.accuracy(*time).expect("a time").bound();
             (
                 case.time_factors.iter().map(bound).collect(),
@@ -210,7 +214,9 @@ mod tests {
             case.time_factors = times.to_vec().into();
             let (each, used) = bounds(&case);
             assert!(each.iter().any(|bound| *bound < used.tail_bound), "{each:?}");
-            assert_eq!(used.tail_bound, each.into_iter().fold(0.0, f64::max), "{times:?}");
+            assert_eq!(used.tail_bound, each.iter().copied().fold(0.0, f64::max), "{times:?}");
+            let at_each = times.map(|time| used.bound_at(&case, time));
+            assert_eq!(at_each[..], each);
             times.rotate_left(1);
         }
     }

@@ -72,9 +72,9 @@ fn smallest_at(record: &Record, reference: &ReferenceUse, time_factor: f64) -> O
 fn poor_outputs(record: &Record, reference: &ReferenceUse) -> Vec<PoorOutput> {
     let poor = |time_factor: &f64| {
         let error = smallest_at(record, reference, *time_factor)?;
+        let (name, accuracy) = (reference.name.clone(), reference.bound_at(&record.case, *time_factor));
         // No reference is better than its round-off, whatever a result at round-off asks; NaN is not enough.
-        let is_enough = reference.tail_bound <= (TAIL_SHARE * error).max(ROUND_OFF);
-        let (name, accuracy) = (reference.name.clone(), reference.tail_bound);
+        let is_enough = accuracy <= (TAIL_SHARE * error).max(ROUND_OFF);
         (!is_enough).then_some(PoorOutput { reference: name, time_factor: *time_factor, accuracy, error })
     };
     record.case.time_factors.iter().filter_map(poor).collect()
@@ -157,6 +157,11 @@ time_step = [{ growth = 0.05 }]
         // Where no output is left the record is complained of.
         let none = complaints(&with(0.11 * at(times[1]))).join("; ");
         assert!(none.starts_with("the reference terzaghi is only accurate to"), "{none}");
+        // An output at which the reference is poor leaves those at which it is not.
+        let mut early = with(1.0);
+        early.references[0].tail_bounds = vec![1.0, 0.0];
+        assert_eq!(complaints(&early), Vec::<String>::new());
+        assert_eq!([0.05, 0.2].map(|time| is_unjudged(&early, "terzaghi", time)), [true, false]);
         // Of two references the poor one is named.
         let second = said(|record| record.references[1].tail_bound = 1.0);
         assert!(second.contains("the reference terzaghi-incompressible"), "{second}");

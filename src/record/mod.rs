@@ -199,9 +199,20 @@ pub struct ReferenceUse {
     pub terms: usize,
     /// Largest tail bound at any output, over the load.
     pub tail_bound: f64,
+    /// The bound at each output, where outputs differ in it by more than round-off.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tail_bounds: Vec<f64>,
     /// Why it does not hold for the case, where it does not: then no error is computed from it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub does_not_hold: Option<String>,
+}
+
+impl ReferenceUse {
+    /// The bound at an output of a case, over the load.
+    pub fn bound_at(&self, case: &Case, time_factor: f64) -> f64 {
+        let place = case.time_factors.iter().position(|time| *time == time_factor);
+        place.and_then(|place| self.tail_bounds.get(place)).copied().unwrap_or(self.tail_bound)
+    }
 }
 
 /// Everything known of one case.
