@@ -48,8 +48,9 @@ struct ColumnFacts {
     method: String,
     /// Reference.
     reference: String,
-    /// Time factor.
+    /// Time factor, and what it is called.
     time_factor: f64,
+    factor_name: &'static str,
     /// Whether the order of each quantity no longer changes from mesh to mesh.
     is_settled: bool,
     /// The orders.
@@ -189,6 +190,7 @@ fn facts_of(found: &SeriesTable<'_>) -> ColumnFacts {
         method: chosen.label.clone(),
         reference: found.reference.to_owned(),
         time_factor: found.time_factor,
+        factor_name: case.scene.clock.factor_name(),
         is_settled: orders.iter().all(|one| one.class.is_some_and(Class::is_settled)),
         orders,
         cells: finest.map_or(0, |(place, _)| found.levels[place].1.case.cells),

@@ -11,7 +11,6 @@ use crate::render::table::{Cell, Table, TableColumn};
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
 use oedometer_convergence::{Class, WINDOW};
 use oedometer_problem::time_step::TimeStep;
-use oedometer_wording::clock_time;
 
 /// What is measured, and where.
 pub type Measured = (Quantity, Sample);
@@ -37,8 +36,6 @@ pub struct SeriesTable<'a> {
     pub reference: &'static str,
     /// Time factor.
     pub time_factor: f64,
-    /// Time, s.
-    pub seconds: f64,
     /// What all runs share.
     pub shared: String,
     /// Levels from coarse to fine, with a record of each.
@@ -203,12 +200,10 @@ impl<'a> SeriesTable<'a> {
         }
         let model_difference =
             results.study.scene.model_difference(reference.parse().ok()?, &first.case.material);
-        let seconds = time_factor * first.case.seconds_per_time_factor();
         let shared = labels.shared;
         let failed = all.iter().flat_map(|path| path.records.iter().copied());
         let failed = failed.filter(|record| record.status.failure().is_some()).collect();
-        let table =
-            Self { axis, reference, time_factor, seconds, shared, levels, series, failed, model_difference };
+        let table = Self { axis, reference, time_factor, shared, levels, series, failed, model_difference };
         (!table.series.is_empty()).then_some(table)
     }
 
@@ -261,10 +256,9 @@ impl<'a> SeriesTable<'a> {
         let below = [shared, orders.to_owned()].into_iter().filter(|note| !note.is_empty());
         let notes = [below.collect::<Vec<_>>().join("; "), words::class_meanings(&rows)];
         let title = format!(
-            "Errors against {}, T_v = {} ({})",
+            "Errors against {}, {}",
             words::solution(self.reference),
-            number::time_factor(self.time_factor),
-            clock_time(self.seconds)
+            words::output_time(&self.levels[0].1.case, self.time_factor)
         );
         let notes = notes.into_iter().filter(|note| !note.is_empty());
         Table::of(title, columns, rows).notes(notes).file(file).shown(SHOWN_ROWS)

@@ -15,6 +15,7 @@ use crate::render::page::Block;
 use crate::render::table::{Cell, Mood, Table, columns};
 use crate::study::check::Study;
 use oedometer_problem::time_step::TimeStep;
+use oedometer_scenes::scene::Clock;
 use oedometer_wording::duration;
 use serde::Serialize;
 
@@ -51,8 +52,9 @@ struct ChoiceFacts {
     cells: usize,
     /// Largest error.
     error: f64,
-    /// Time factor of the output that has it.
+    /// Time factor of the output that has it, and what it is called.
     time_factor: f64,
+    factor_name: &'static str,
     /// Time of that output, s.
     seconds: f64,
 }
@@ -84,6 +86,7 @@ fn answer(study: &str, all: &[QuantityWithin]) -> Option<Finding> {
         cells: choice.cells,
         error: choice.error,
         time_factor: choice.time_factor,
+        factor_name: choice.clock.factor_name(),
         seconds: choice.seconds,
     };
     let reached = all.iter().filter_map(|asked| Some(of(asked, asked.bounds[0].choice.as_ref()?)));
@@ -142,7 +145,8 @@ fn table(all: &[QuantityWithin]) -> Table {
     let with_integrator = if shared.is_none() { " | integrator" } else { "" };
     let with_points = if has_points { " | > points per cell" } else { "" };
     let header = format!(
-        "error of | > bound | method{with_integrator} | > cells{with_points} | > step | > largest | > at T_v"
+        "error of | > bound | method{with_integrator} | > cells{with_points} | > step | > largest | > at {}",
+        all[0].best.clock.factor_name()
     );
     let is_counted = all.iter().all(|asked| asked.best.cost > 0.0);
     let least = if is_counted { "Least counted work" } else { "Coarsest mesh" };
@@ -246,8 +250,9 @@ pub struct WithinFinding {
     pub is_confirmed: bool,
     /// Largest error.
     pub error: f64,
-    /// Time factor of the output that has it.
+    /// Time factor of the output that has it, and what it counts.
     pub time_factor: f64,
+    pub clock: Clock,
     /// Time of that output, s.
     pub seconds: f64,
     /// Counted work of the run with the largest error, s.
@@ -352,6 +357,7 @@ impl WithinFinding {
             is_confirmed: false,
             error: row.value.abs(),
             time_factor: row.time_factor,
+            clock: case.scene.clock,
             seconds: row.time_factor * case.seconds_per_time_factor(),
             // What another program costs is not counted.
             cost: if case.counts_work() { cost_of(record) } else { 0.0 },

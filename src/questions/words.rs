@@ -1,11 +1,14 @@
 //! Words for quantities, samples, axes and orders, shared by all figures and tables.
 
+use crate::case::Case;
 use crate::case::quantity::{Quantity, Sample};
 use crate::render::number;
 use crate::render::table::Cell;
 use crate::study::expectation::{Axis, NEXT_FINER};
 use oedometer_convergence::Class;
 use oedometer_exact::reference::ReferenceKind;
+use oedometer_scenes::scene::Clock;
+use oedometer_wording::clock_time;
 
 /// What every cost is, wherever one stands.
 pub const COUNTED_WORK: &str = "counted operations times their calibrated times";
@@ -69,6 +72,15 @@ pub fn solution(reference: &str) -> String {
     let known: Option<ReferenceKind> = reference.parse().ok();
     let words = known.map(|kind| kind.row().words).filter(|words| !words.is_empty());
     words.map_or_else(|| format!("the exact solution `{reference}`"), str::to_owned)
+}
+
+/// The time of an output, and where a clock shows it, what that shows.
+pub fn output_time(case: &Case, factor: f64) -> String {
+    let (name, typed) = (case.scene.clock.factor_name(), number::time_factor(factor));
+    if case.scene.clock == Clock::Push {
+        return format!("{name} = {typed}");
+    }
+    format!("{name} = {typed} ({})", clock_time(factor * case.seconds_per_time_factor()))
 }
 
 /// A reference as the name of a line.

@@ -217,6 +217,11 @@ pub enum Clock {
 }
 
 impl Clock {
+    /// What a time factor is called: that of consolidation, or the settlement of a plate over its width.
+    pub fn factor_name(self) -> &'static str {
+        if self == Self::Push { "u/B" } else { "T_v" }
+    }
+
     /// Whether a time factor of one is a time that consolidation takes.
     pub fn counts_consolidation(self) -> bool {
         matches!(self, Self::Consolidation | Self::HalfSpace)
