@@ -171,7 +171,8 @@ impl Jump {
         let needed = 2.0 * (self.after - self.before).abs() / (1.0 + size);
         let power = format!("{needed:e}").split('e').nth(1).map_or(0, |power| power.parse().unwrap_or(0));
         let digit = elementary::powi(10.0, power);
-        format!("{:e}", (needed / digit).ceil() * digit).parse().unwrap_or(needed)
+        // As it is typed: a product would leave a last digit of its own.
+        format!("{}e{power}", (needed / digit).ceil()).parse().unwrap_or(needed)
     }
 
     /// What jumps, why, and what can be done.
@@ -409,7 +410,9 @@ mod tests {
                 (LastDigit::Stiffness, values([1.05; 3])),
             ];
             let jump = file.jump(&digits).expect("far off");
-            assert_eq!((jump.key, jump.digit), (error(4, samples[widest]), LastDigit::Conductivity));
+            assert_eq!((&jump.key, jump.digit), (&error(4, samples[widest]), LastDigit::Conductivity));
+            // In one digit, with no other behind it.
+            assert_eq!(Jump { before: 1.081865e-3, after: 1.115817e-3, ..jump }.needed(), 7e-5);
         }
     }
 

@@ -257,6 +257,22 @@ fn a_load_is_warned_of_from_a_hundredth_of_strain_on_where_it_is_typed() {
 }
 
 #[test]
+fn a_bound_that_a_result_of_zero_meets_is_asked_about_wherever_it_stands() {
+    for (block, is_asked) in [
+        ("[[expect]]\ntime_factor = 0.1\nat = { cells = 4, below = 1 }", true),
+        ("[[expect]]\ntime_factor = 0.1\nat = { cells = 4, below = 0.99 }", false),
+        ("[[expect]]\ntime_factor = 0.1\nat = { cells = 4, below = 2, above = 1 }", false),
+        ("[[expect_case]]\ntime_factor = 0.1\nerror = { below = 1 }", true),
+        ("[[expect_case]]\ntime_factor = 0.1\nerror = { below = 0.99 }", false),
+        ("[[expect_case]]\ntime_factor = 0.1\nerror = { above = 0.5 }", false),
+    ] {
+        let study = checked(&text("terzaghi", "", "integrator = ['implicit']\ncells = [4, 8]", block));
+        let warnings = study.expect("sound").warnings.join("\n");
+        assert_eq!(warnings.contains("did you mean \"1 %\"?"), is_asked, "{block}: {warnings}");
+    }
+}
+
+#[test]
 fn the_slowest_of_the_projected_waves_is_told_wherever_it_stands() {
     for cells in ["[4, 16, 64]", "[16, 4, 64]", "[64, 16, 4]"] {
         let sweep = format!("cells = {cells}\ntime_factors = [1e-6]");

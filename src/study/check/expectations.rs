@@ -385,14 +385,20 @@ impl Checker<'_> {
             );
             return None;
         };
-        if below >= 1.0 && level.above.is_none() {
+        let above = level.above.unwrap_or(0.0);
+        self.question_whole_errors(level.span(), Bounds { above, below });
+        Some(ErrorBound { size, below, above })
+    }
+
+    /// Asks about a bound that a result of zero meets.
+    fn question_whole_errors(&mut self, place: Range<usize>, Bounds { above, below }: Bounds) {
+        if below >= 1.0 && below < f64::MAX && above == 0.0 {
             self.warn(&Diagnostic::at(
-                level.span(),
+                place,
                 format!("an error below {below} means {} %, which even a result of zero has", 100.0 * below),
                 format!("did you mean \"{below} %\"?"),
             ));
         }
-        Some(ErrorBound { size, below, above: level.above.unwrap_or(0.0) })
     }
 
     /// Bounds on one error of a case.
@@ -412,6 +418,7 @@ impl Checker<'_> {
             subject.planned,
         )?;
         let bounds = self.bounds(&table.error)?;
+        self.question_whole_errors(range.span(), bounds);
         let reference = reference.name().to_owned();
         let measure = Measure { quantity: table.quantity, sample, norm, reference, time_factor, probe: None };
         Some(ErrorRange { measure, any_places: table.sample.is_none(), bounds })
