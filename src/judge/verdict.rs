@@ -460,7 +460,7 @@ pub fn differing_repeats(records: &[Record]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::records_of;
+    use crate::campaign::runner::{records_of, study_of};
     use crate::record::Status;
     use oedometer_problem::outcome::{Failure, FailureKind};
 
@@ -491,5 +491,31 @@ mod tests {
         let mut golden = GoldenFile::of("t", &[], "test");
         golden.values = kept.iter().chain([&name(&skipped)]).map(|name| (name.clone(), 1.0)).collect();
         assert_eq!(absent.without(golden).values, kept.map(|name| (name, 1.0)).into());
+    }
+
+    #[test]
+    fn what_is_not_judged_is_counted_in_the_tiers_that_run() {
+        let expected = |block: &str, tier: &str, demand: &str| {
+            format!("[[{block}]]\ncells = 2\ntier = '{tier}'\n{demand}\n")
+        };
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+                    integrator = ['implicit']\ncells = [2, 4]\n";
+        let study = |tiers: [&str; 2]| {
+            study_of(
+                "t",
+                &(text.to_owned()
+                    + &tiers.map(|tier| expected("expect_case", tier, "status = 'ok'")).concat()),
+            )
+        };
+        let records = records();
+        let absent = Absent::among(&records);
+        for (tiers, counts) in [(["ci", "full"], [1, 2]), (["full", "full"], [0, 2]), (["ci", "ci"], [2, 2])]
+        {
+            assert_eq!(
+                [Tier::Ci, Tier::Full].map(|tier| absent.unjudged(&study(tiers), tier)),
+                counts,
+                "{tiers:?}"
+            );
+        }
     }
 }

@@ -343,6 +343,23 @@ mod tests {
         }
         let refused = whole.append(stated("Pa"));
         assert_eq!(refused, Err("its parts have `p` in kPa and in Pa".to_owned()));
+        // What any of three parts says of itself is said of the whole.
+        for odd in 0..3 {
+            let mut parts = [0.0, 1.0, 2.0].map(part);
+            let said = &mut parts[odd];
+            (said.notes, said.doubts) = (vec!["a note".to_owned()], vec!["a doubt".to_owned()]);
+            said.fills.insert("p".to_owned(), -999.0);
+            let [mut whole, second, third] = parts;
+            for part in [second, third] {
+                whole.append(part).expect("alike");
+            }
+            let told = (&whole.notes[..], &whole.doubts[..], whole.fills.get("p"));
+            assert_eq!(
+                told,
+                (&["a note".to_owned()][..], &["a doubt".to_owned()][..], Some(&-999.0)),
+                "{odd}"
+            );
+        }
     }
 
     #[test]

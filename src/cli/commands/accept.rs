@@ -134,17 +134,17 @@ fn refuse_failing(studies: &[Study], records: &[Vec<Record>], despite: bool) -> 
 /// # Errors
 /// A sentence that says which.
 pub fn refuse_without_origin() -> anyhow::Result<()> {
-    if is_on("CI") {
-        return Err(Ended::usage(
-            "golden values are not accepted in CI: review and accept them on your own machine",
-        ));
+    without_origin(is_on("CI"), &Provenance::of_this_program()).map_or(Ok(()), |why| Err(Ended::usage(why)))
+}
+
+/// Why a program may not accept golden values.
+fn without_origin(is_in_ci: bool, program: &Provenance) -> Option<&'static str> {
+    if is_in_ci {
+        return Some("golden values are not accepted in CI: review and accept them on your own machine");
     }
-    if Provenance::of_this_program().dirty {
-        return Err(Ended::usage(
-            "the sources of this program have uncommitted changes: commit and build first, so that golden values can be traced",
-        ));
-    }
-    Ok(())
+    program.dirty.then_some(
+        "the sources of this program have uncommitted changes: commit and build first, so that golden values can be traced",
+    )
 }
 
 /// The golden values there are; `None` where there are none. An unreadable file is not replaced, because its content is unknown.
@@ -270,6 +270,23 @@ mod tests {
             "why (orders lost: s cells=… 2.00 → 1.00)"
         );
         assert!(with_lost_orders("why", &vec![lost; 7]).ends_with("; and 2 more)"));
+    }
+
+    #[test]
+    fn golden_values_are_accepted_by_a_person_and_from_sources_that_are_committed() {
+        for (is_in_ci, dirty, words) in [
+            (false, false, None),
+            (true, false, Some("in CI")),
+            (false, true, Some("uncommitted changes")),
+            (true, true, Some("in CI")),
+        ] {
+            let program = Provenance { dirty, ..Provenance::of_this_program() };
+            let why = without_origin(is_in_ci, &program);
+            assert!(
+                words.map_or(why.is_none(), |words| why.is_some_and(|why| why.contains(words))),
+                "{why:?}"
+            );
+        }
     }
 
     #[test]

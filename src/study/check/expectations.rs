@@ -392,7 +392,7 @@ impl Checker<'_> {
 
     /// Asks about a bound that a result of zero meets.
     fn question_whole_errors(&mut self, place: Range<usize>, Bounds { above, below }: Bounds) {
-        if below >= 1.0 && below < f64::MAX && above == 0.0 {
+        if (1.0..f64::MAX).contains(&below) && above == 0.0 {
             self.warn(&Diagnostic::at(
                 place,
                 format!("an error below {below} means {} %, which even a result of zero has", 100.0 * below),

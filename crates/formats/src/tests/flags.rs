@@ -34,6 +34,38 @@ fn nodes_of_gmsh_have_places_on_entities_of_every_dimension() {
     }
 }
 
+/// Version, kind and size of numbers in the head of a mesh: text of two versions is read, whatever its numbers' size.
+#[test]
+fn a_mesh_of_gmsh_is_read_by_its_head() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let place = folder.path().join("a.msh");
+    let nodes = [
+        "$Nodes\n2\n1 0 0 0\n2 0 1 0\n$EndNodes\n",
+        "$Nodes\n1 2 1 2\n1 1 0 2\n1\n2\n0 0 0\n0 1 0\n$EndNodes\n",
+    ];
+    for (head, layout, refused) in [
+        ("2.2 0 8", 0, None),
+        ("2 0 8", 0, Some("expected 2.2 or 4.1")),
+        ("4.1 0 8", 1, None),
+        ("4.1 0 4", 1, None),
+        ("4.1 1 8", 1, Some("binary")),
+        ("2.2 1 8", 0, Some("binary")),
+        ("4 0 8", 1, Some("expected 2.2 or 4.1")),
+        ("4.0 0 8", 1, Some("expected 2.2 or 4.1")),
+        ("3 0 8", 1, Some("expected 2.2 or 4.1")),
+    ] {
+        let text = format!("$MeshFormat\n{head}\n$EndMeshFormat\n{}", nodes[layout]);
+        std::fs::write(&place, text).expect("a file");
+        let names = all_names();
+        let read = steps_of(&place, &mut Vec::new()).and_then(|steps| first_frame(&steps, Wanted(&names)));
+        match (read, refused) {
+            (Ok(frame), None) => assert_eq!(frame.coordinates, [[0.0; 3], [0.0, 1.0, 0.0]], "{head}"),
+            (Err(error), Some(words)) => assert!(error.to_string().contains(words), "{head}: {error}"),
+            (read, _) => panic!("{head}: {:?}", read.map(|frame| frame.coordinates)),
+        }
+    }
+}
+
 /// Points and cells of another piece in one part of a state, whichever it is.
 #[test]
 fn ghosts_are_left_out_of_any_part_of_a_state() {

@@ -448,16 +448,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn supports_hold_the_base_and_the_sides_and_leave_the_top_free() {
+    fn each_support_holds_its_faces_and_leaves_the_others_free() {
         let grid = Grid::new(0.1, [1, 10]);
-        let mut nodes = Nodes::new(&grid, &Support::oedometer(), 1.0);
-        nodes.sums.masses.fill([[1.0; 4]]);
-        nodes.take_masses(&Material::default(), false);
-        let at = |x: usize, y: usize| nodes.free[grid.flat_node(&[x + 2, y + 2])];
-        assert_eq!(at(0, 0), [0.0, 0.0]);
-        assert_eq!(at(1, 5), [0.0, 1.0]);
-        assert_eq!(at(1, 10), [0.0, 1.0]);
-        assert_eq!(nodes.free[grid.flat_node(&[2, 1])], [0.0, 0.0], "below the base");
+        // At the corner of the base, on the upper side, on top of it, and below the base.
+        for (support, free) in [
+            (Support::oedometer(), [[0.0, 0.0], [0.0, 1.0], [0.0, 1.0], [0.0, 0.0]]),
+            (Support::oedometer().with_movable_side(), [[0.0, 0.0], [1.0, 1.0], [1.0, 1.0], [0.0, 0.0]]),
+            (Support::closed(), [[0.0, 0.0], [0.0, 1.0], [0.0, 0.0], [0.0, 0.0]]),
+            (Support::free(), [[1.0, 1.0]; 4]),
+        ] {
+            let mut nodes = Nodes::new(&grid, &support, 1.0);
+            nodes.sums.masses.fill([[1.0; 4]]);
+            nodes.take_masses(&Material::default(), false);
+            let places = [[2, 2], [3, 7], [3, 12], [2, 1]];
+            assert_eq!(places.map(|place| nodes.free[grid.flat_node(&place)]), free, "{support:?}");
+        }
     }
 
     #[test]
