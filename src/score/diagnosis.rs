@@ -45,10 +45,23 @@ pub fn diagnosis(
         })
     };
     let runs = runs(states);
-    let mut told =
-        if let [run] = &runs[..] { of_run(run) } else { vec![told_of_runs(runs.iter().map(of_run))] };
-    let is_over_depth = reference.row().axis == Axis::OverDepth;
-    if let Some(uneven) = uneven_top(parameters, states).filter(|_| is_over_depth) {
+    let mut told = runs.iter().map(of_run);
+    let mut told = if runs.len() == 1 {
+        told.next().unwrap_or_default()
+    } else {
+        let of_run = |(place, told): (usize, Vec<String>)| match told.join("; ") {
+            told if told.is_empty() => format!("run {} is right", place + 1),
+            told => format!("in run {} {told}", place + 1),
+        };
+        let told = told.enumerate().map(of_run).collect::<Vec<_>>().join("; ");
+        vec![format!(
+            "there are {} {SEVERAL_RUNS}, with other values at the same times: {told}: was a second run appended?",
+            runs.len()
+        )]
+    };
+    if reference.row().axis == Axis::OverDepth
+        && let Some(uneven) = uneven_top(parameters, states)
+    {
         told.retain(|told| !told.contains(NO_MISTAKE));
         told.push(uneven);
     }
@@ -68,19 +81,6 @@ fn runs(states: &[SampledState]) -> Vec<Vec<&SampledState>> {
     runs
 }
 
-/// A sentence on several runs in one file, of what is told of each.
-fn told_of_runs(told: impl ExactSizeIterator<Item = Vec<String>>) -> String {
-    let count = told.len();
-    let of_run = |(place, told): (usize, Vec<String>)| match told.join("; ") {
-        told if told.is_empty() => format!("run {} is right", place + 1),
-        told => format!("in run {} {told}", place + 1),
-    };
-    let told = told.enumerate().map(of_run).collect::<Vec<_>>().join("; ");
-    format!(
-        "there are {count} {SEVERAL_RUNS}, with other values at the same times: {told}: was a second run appended?"
-    )
-}
-
 /// What seems wrong with a run, or with some of its outputs.
 fn told_of(given: &Given<'_>, is_part: bool) -> Vec<String> {
     let Some(found) = given.thin().and_then(|thin| search::explanation(&thin, given, is_part)) else {
@@ -91,11 +91,9 @@ fn told_of(given: &Given<'_>, is_part: bool) -> Vec<String> {
     let columns = given.columns.iter().zip(&found.readings);
     let open: Vec<&Column> =
         columns.filter(|(_, reading)| reading.is_none()).map(|(column, _)| column).collect();
-    if !is_part
-        && !is_world
-        && let Some(apart) = told_apart(&open, given)
-    {
-        told.push(apart);
+    let apart = (!is_part && !is_world).then(|| told_apart(&open, given)).flatten();
+    if apart.is_some() {
+        told.extend(apart);
         return told;
     }
     for column in open {

@@ -5,7 +5,6 @@ use super::world::{Fields, World};
 use crate::import::SampledState;
 use crate::import::mapping::Mapping;
 use crate::score::coverage::lines;
-use oedometer_soil::elementary::powi;
 
 /// Number of outputs that are examined, spread over all of them.
 const OUTPUTS: usize = 12;
@@ -333,7 +332,8 @@ impl<'a> Given<'a> {
         }
         column.exact = column.of_itself(predicted);
         column.residual = column.misfit(&column.itself(&column.exact), 1.0, None);
-        let is_of_mesh = field != Field::Settlement && column.residual < MESH / powi((rows - 1) as f64, 2);
+        let is_of_mesh =
+            field != Field::Settlement && column.residual < MESH / ((rows - 1) * (rows - 1)) as f64;
         let share = if is_of_mesh || column.values.len() < FEW { CLEAN } else { SHARE };
         column.limit = share * column.residual;
         column

@@ -4,12 +4,11 @@
 //! [`WORLDS`] concern all of them.
 
 use super::columns::{Column, Field, Given};
-use super::readings::{Exact, has_other_times};
+use super::readings::{Exact, is_timed};
 use super::world::{EDGES, Ends, World};
 use super::{digits, shown};
 use crate::import::mapping::units::{StressUnit, TimeUnit};
-use oedometer_exact::ReferenceKind::{self, LargeStrain, XieLeo};
-use oedometer_exact::{Drainage, Reference};
+use oedometer_exact::{Drainage, Reference, ReferenceKind};
 use oedometer_soil::elementary::powi;
 use oedometer_soil::layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
@@ -17,9 +16,8 @@ use oedometer_soil::stiffness::Stiffness;
 use oedometer_wording::{DAY, HOUR, MINUTE, WEEK, YEAR};
 
 /// Units of stress and length, in SI.
-#[rustfmt::skip]
-const STRESSES: [(&str, f64); 7] =
-    [("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9), ("bar", 1e5), ("atm", 101_325.0), ("psi", 6_894.757)];
+const STRESSES: [(&str, f64); 6] =
+    [("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6), ("bar", 1e5), ("atm", 101_325.0), ("psi", 6_894.757)];
 const LENGTHS: [(&str, f64); 7] =
     [("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("µm", 1e-6), ("km", 1e3), ("in", 0.0254), ("ft", 0.3048)];
 /// Units of time, s, with the word that they have in a velocity.
@@ -62,20 +60,17 @@ pub fn scales(field: Field, given: &Given<'_>) -> Vec<Scale> {
     add(1.0, "", false);
     let (table, own, name, whole) = if field.is_stress() {
         let unit = units.stress.unwrap_or(StressUnit::Pascal);
-        (&STRESSES, unit.pascals(), unit.name(), ("load, p/q", parameters.load))
+        (&STRESSES[..], unit.pascals(), unit.name(), ("load, p/q", parameters.load))
     } else {
         let unit = units.displacement.unwrap_or(units.length);
-        (&LENGTHS, unit.metres(), unit.name(), ("final settlement", parameters.final_settlement()))
+        (&LENGTHS[..], unit.metres(), unit.name(), ("final settlement", parameters.final_settlement()))
     };
     for (unit, si) in table {
         add(own / si, &format!("is it in {unit} where {name} is declared"), false);
     }
     for (unit, metres) in LENGTHS.iter().take(3).filter(|_| field == Field::Pressure) {
-        add(
-            own / metres / weight,
-            &format!("is it a head in {unit}, p/γ_w, where {name} is declared"),
-            false,
-        );
+        let asked = format!("is it a head in {unit}, p/γ_w, where {name} is declared");
+        add(own / metres / weight, &asked, false);
     }
     add(own / whole.1, &format!("is it divided by the {}", whole.0), false);
     add(2.0, "is it doubled where it is written", true);
@@ -142,10 +137,9 @@ const ATMOSPHERES: Number = Number::Named(&[101_325.0, 1e5]);
 const ROW: Row = Row { of: P, said: "the exact one", asked: "", holds: |x, _| x.own.clone(), plus: None, number: Number::None, count: 1, units: Units::All,
     is_possible: |_| true };
 /// A row of other times, which are computed at no great cost.
-const LATER: Row = Row { units: Units::Own, is_possible: has_other_times, ..ROW };
+const LATER: Row = Row { units: Units::Own, is_possible: is_timed, ..ROW };
 /// The same of a column beside one that is right.
-#[rustfmt::skip]
-const BESIDE: Row = Row { of: &Field::ALL, is_possible: |x| has_other_times(x) && x.column.is_other_right, ..LATER };
+const BESIDE: Row = Row { of: &Field::ALL, is_possible: |x| is_timed(x) && x.column.is_other_right, ..LATER };
 
 /// What one column may hold.
 #[rustfmt::skip]
@@ -208,7 +202,7 @@ pub const READINGS: &[Row] = &[
     Row { of: NOT_STRESS, said: "the rate of the exact one", asked: "is it the rate (velocity), not the total",
         holds: |x, _| x.rate(), ..LATER },
     Row { of: &Field::ALL, said: "the exact one upside down", asked: "is only this column written from the other end",
-        holds: |x, _| x.turned(), units: Units::Own, is_possible: |x| x.column.is_other_right, ..ROW },
+        holds: |x, _| x.of_world(&World { ends: Ends::UpsideDown, ..x.world.clone() }, &x.given.times), units: Units::Own, is_possible: |x| x.column.is_other_right, ..ROW },
 ];
 
 /// Numbers with the questions that name them.
@@ -224,7 +218,7 @@ pub struct Cause {
     /// Where a number is looked for, between the first and the last time; by decades where it is positive.
     pub range: Option<fn(&Given<'_>) -> [f64; 2]>,
     pub names: fn(&Given<'_>) -> Names,
-    /// What to ask of a number without a name.
+    /// What else to ask of a number without a name.
     pub asked_of: fn(&Given<'_>, f64) -> String,
     /// Whether it concerns times alone: some of the outputs may have it, and it goes with other units.
     pub is_of_times: bool,
@@ -236,11 +230,6 @@ const CAUSE: Cause = Cause { said: "", asked: "", is_possible: |_| true, of: |_,
 /// A cause with a factor.
 const FACTOR: Cause = Cause { range: Some(|_| [1e-6, 1e6]), ..CAUSE };
 
-/// Places that are counted from the other end.
-#[rustfmt::skip]
-pub const UPSIDE_DOWN: Cause = Cause { said: " upside down", asked: "is `y` counted from the other end",
-    is_possible: |given| !given.own.is_slab(), of: |_, own, _| World { ends: Ends::UpsideDown, ..own }, ..CAUSE };
-
 /// Times before anything has drained, and after all has.
 #[rustfmt::skip]
 pub const START: Cause = Cause { said: " of the start: nothing has drained at the last time",
@@ -251,23 +240,18 @@ pub const END: Cause = Cause { said: " of the end",
     asked: "has everything drained before the first time (is k, or are the times, far too large)", is_possible: |given| given.own.is_slow(), is_of_times: true,
     of: |given, own, _| World { clock: [0.0, given.own.parameters.time(EDGES[1])], ..own }, ..CAUSE };
 
-/// A factor of all times.
-#[rustfmt::skip]
-pub const CLOCK: Cause = Cause { said: " at {} × the time", is_possible: |given| given.own.is_slow(), is_of_times: true,
-    of: |_, own, factor| World { clock: [factor, 0.0], ..own }, names: clocks, asked_of: is_clock,
-    range: Some(|given| [EDGES[0] / given.own.parameters.time_factor(given.span()[1]), EDGES[1] / given.own.parameters.time_factor(given.span()[0])]), ..CAUSE };
-
 /// One state at all outputs.
 #[rustfmt::skip]
 pub const ONE_STATE: Cause = Cause { said: " of {} s at all outputs",
     is_possible: |given| given.own.is_slow() && !given.own.kind.row().is_prepared && given.columns.iter().all(Column::stands_still),
     of: |_, own, moment| World { clock: [0.0, moment], ..own }, range: Some(|given| [1e-6, 10.0].map(|factor| given.own.parameters.time(factor))),
-    asked_of: |_, _| "is the same state written, or read, every time".to_owned(), ..CAUSE };
+    asked: "is the same state written, or read, every time", ..CAUSE };
 
 /// What all columns may share.
 #[rustfmt::skip]
 pub const WORLDS: &[Cause] = &[
-    UPSIDE_DOWN,
+    Cause { said: " upside down", asked: "is `y` counted from the other end",
+        is_possible: |given| !given.own.is_slab(), of: |_, own, _| World { ends: Ends::UpsideDown, ..own }, ..CAUSE },
     Cause { said: " with x turned", asked: "does `x` count from the drained side", is_possible: |given| given.own.is_slab(),
         of: |_, own, _| World { ends: Ends::UpsideDown, ..own }, ..CAUSE },
     Cause { said: " with x turned", asked: "does `x` count from the other end", is_possible: is_plane,
@@ -293,22 +277,21 @@ pub const WORLDS: &[Cause] = &[
     Cause { said: " of another stiffness", asked: "are λ and μ exchanged", is_possible: |given| is_plane(given) || given.own.is_slab(),
         of: |_, own, _| own.with_soils(exchange_moduli), ..CAUSE },
     Cause { said: " of {} × the load", of: |_, mut own, factor| { own.parameters.load *= factor; own },
-        is_possible: |given| (given.moves() && given.columns[0].field.is_stress() || matches!(given.own.kind, LargeStrain(_) | XieLeo)) && !given.own.kind.is_manufactured(),
-        names: |_| [2.0, 0.5].map(|factor| (factor, is_load(factor))).to_vec(), asked_of: |_, factor| is_load(factor), ..FACTOR },
+        is_possible: |given| (given.moves() && given.columns[0].field.is_stress() || matches!(given.own.kind, ReferenceKind::LargeStrain(_) | ReferenceKind::XieLeo)) && !given.own.kind.is_manufactured(),
+        names: |_| [2.0, 0.5].map(|factor| (factor, is_load(factor))).to_vec(), asked: "is the load {} × that of the problem", ..FACTOR },
     ONE_STATE,
-    CLOCK,
+    Cause { said: " at {} × the time", is_possible: |given| given.own.is_slow(), is_of_times: true,
+        of: |_, own, factor| World { clock: [factor, 0.0], ..own }, names: clocks, asked_of: is_clock,
+        range: Some(|given| [EDGES[0] / given.own.parameters.time_factor(given.span()[1]), EDGES[1] / given.own.parameters.time_factor(given.span()[0])]), ..CAUSE },
     Cause { said: " with {} × the stiffness", of: |_, own, factor| own.with_soils(|soil| soil.youngs_modulus *= factor),
-        is_possible: |given| given.own.is_slow() && given.moves() && !matches!(given.own.kind, LargeStrain(_)),
+        is_possible: |given| given.own.is_slow() && given.moves() && !matches!(given.own.kind, ReferenceKind::LargeStrain(_)),
         names: |given| [moduli(given), tens(3, "is E off by a power of ten, or in another unit")].concat(), asked_of: is_stiffness, ..FACTOR },
     Cause { said: " {} s {side}", is_of_times: true, of: |_, own, moment| World { clock: [1.0, moment], ..own },
         is_possible: |given| given.own.is_slow() && !given.own.kind.row().is_prepared, range: Some(|given| [-0.95 * given.span()[0], given.span()[1]]),
-        asked_of: |_, moment| {
-            let late = if moment < 0.0 { "late" } else { "early" };
-            format!("do your times start at another moment, so that all are {} s too {late}", shown(moment.abs()))
-        }, ..CAUSE },
+        asked: "do your times start at another moment, so that all are {} s too {late}", ..CAUSE },
     Cause { said: " under a load that rises over {} s", of: |_, own, ramp| World { ramp, ..own },
         is_possible: |given| given.own.kind.row().adds_up && !given.own.parameters.self_weight, range: Some(|given| [0.05 * given.span()[0], 10.0 * given.span()[1]]),
-        asked_of: |_, ramp| format!("does your load rise over {} s, in a ramp, whereas that of the problem is sudden", shown(ramp)), ..CAUSE },
+        asked: "does your load rise over {} s, in a ramp, whereas that of the problem is sudden", ..CAUSE },
     Cause { said: " of a skeleton without the pressure",
         asked: "is the pore pressure missing from the momentum balance, so that the skeleton carries the load at once",
         is_possible: |given| given.own.is_slow() && given.moves(), of: |_, own, _| World { is_coupled: false, ..own }, ..CAUSE },
@@ -426,8 +409,5 @@ fn moduli(given: &Given<'_>) -> Names {
         (shear, "is the shear modulus G taken for E_oed"),
         (2.0 * shear, "is 2G taken for E_oed"),
     ];
-    let is_column = !(is_plane(given) || given.own.is_slab());
-    let named = all.into_iter().take(if is_column { all.len() } else { 1 });
-    let is_other = |(ratio, _): &(f64, String)| *ratio > 0.0 && (ratio - 1.0).abs() > NAME;
-    named.map(|(modulus, asked)| (modulus / right, asked.to_owned())).filter(is_other).collect()
+    all.map(|(modulus, asked)| (modulus / right, asked.to_owned())).to_vec()
 }

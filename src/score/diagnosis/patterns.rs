@@ -1,10 +1,10 @@
 //! Patterns of samples, and what a column holds or where its residual is when nothing explains it.
 
-use super::columns::{Column, FEW, Given, about_mean};
+use super::columns::{Column, FEW, Given, Held, about_mean};
 use super::hypotheses::{END, START};
 use super::readings::Reading;
 use super::search::FLOOR;
-use super::{NO_MISTAKE, listed, shown};
+use super::{NO_MISTAKE, digits, listed, shown};
 use crate::score::coverage::lines;
 use oedometer_wording::rounded;
 
@@ -49,14 +49,10 @@ fn blank(column: &Column, given: &Given<'_>) -> Option<Reading> {
     wrong.sort_unstable_by(f64::total_cmp);
     let blank = *wrong.chunk_by(|a, b| a == b).max_by_key(|same| same.len())?.first()?;
     let blanks: Vec<usize> = seen.iter().copied().filter(|at| values[*at] == blank).collect();
-    let mut held = column.itself(exact);
-    for at in &blanks {
-        held.values[*at] = blank;
-    }
-    let left = column.accepts(&held, 1.0)?;
-    if blanks.len() < 2 || 4 * (seen.len() - blanks.len()) < seen.len() {
-        return None;
-    }
+    let filled = values.iter().zip(exact).map(|(value, exact)| if *value == blank { blank } else { *exact });
+    let held = Held { values: filled.collect(), ..column.itself(exact) };
+    let is_seldom = blanks.len() > 1 && 4 * (seen.len() - blanks.len()) >= seen.len();
+    let left = column.accepts(&held, 1.0).filter(|_| is_seldom)?;
     // The groups of which all values are blank, if these are all blanks.
     let whole = |groups: &[usize]| {
         let mut all: Vec<usize> = blanks.iter().map(|at| groups[*at]).collect();
@@ -92,11 +88,10 @@ fn checkerboard(column: &Column, given: &Given<'_>) -> Option<Reading> {
     }
     let exact = &column.exact;
     let off = column.beyond(exact, 1.0);
-    let of = |(row, is_of_field, is_across): (usize, bool, bool)| {
+    let of = |(row, is_across): (usize, bool)| {
         let part = |at: usize| {
             let across = if is_across { along.get(at).map_or(0, |number| number / row) } else { 0 };
-            let size = if is_of_field { exact[at] } else { column.scale };
-            if (up[at] / row + across).is_multiple_of(2) { size } else { -size }
+            if (up[at] / row + across).is_multiple_of(2) { exact[at] } else { -exact[at] }
         };
         let pattern: Vec<f64> = (0..exact.len()).map(part).collect();
         let (mut rest, mut largest, mut is_halved) = (off.clone(), 0.0_f64, true);
@@ -107,16 +102,12 @@ fn checkerboard(column: &Column, given: &Given<'_>) -> Option<Reading> {
             largest = largest.max(share.abs());
             is_halved &= column.size(&rest, Some(output)) <= ALTERNATES * column.size(&off, Some(output));
         }
-        let of = if is_of_field { "of the exact one" } else { "of the load" };
         let (percent, left) = (shown(100.0 * largest), column.size(&rest, None) / column.size(exact, None));
-        let said = format!(
-            "alternates from sample to sample by ± {percent} % {of} around the exact one, a checkerboard"
-        );
+        let said =
+            format!("alternates from sample to sample by ± {percent} % around the exact one, a checkerboard");
         is_halved.then(|| reading(said, STABILISATION, [1, 1], left, column))
     };
-    let ways = [(true, false), (true, true), (false, false), (false, true)];
-    let all =
-        (1..=LONGEST).flat_map(|row| ways.map(|(is_of_field, is_across)| (row, is_of_field, is_across)));
+    let all = (1..=LONGEST).flat_map(|row| [(row, false), (row, true)]);
     all.filter_map(of).min_by(|a, b| a.left.total_cmp(&b.left))
 }
 
@@ -139,9 +130,6 @@ fn order(column: &Column) -> Option<Reading> {
         };
         for (own, right) in sorted(&column.values).into_iter().zip(sorted(exact)) {
             held.values[own] = exact[right];
-        }
-        if here.len() < FEW / 2 {
-            return None;
         }
     }
     let left = column.accepts(&held, 1.0).filter(|left| *left <= FLOOR.max(ORDERED * column.residual))?;
@@ -189,7 +177,7 @@ pub fn place(column: &Column, given: &Given<'_>) -> Option<String> {
     };
     let rows = lines(&column.heights, height);
     let row = rows.iter().find(|row| off.len() >= FEW && rows.len() > 1 && is_row(row))?;
-    let percent = rounded((100.0 * column.residual).round());
+    let percent = digits((100.0 * column.residual).round());
     let at = rounded(*row);
     Some(format!(
         "your {} is off by {percent} %, and {NO_MISTAKE}: nearly all of it sits at y = {at} m",

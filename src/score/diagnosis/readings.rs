@@ -4,7 +4,7 @@ use super::columns::{CLEAN, Column, FEW, Field, Given, Held, about_mean};
 use super::hypotheses::{Number, Row, SIGN, Scale, Units, WHERE_WRITTEN, is_load};
 use super::search::minimum;
 use super::shown;
-use super::world::{Ends, Fields, World, early_parts};
+use super::world::{Fields, World, early_parts};
 use oedometer_exact::ColumnParameters;
 use oedometer_soil::elementary::{exp, ln};
 
@@ -60,7 +60,7 @@ impl<'a> Exact<'a> {
     }
 
     /// The exact values of a world at times of the outputs; not numbers where it has no solution.
-    fn of_world(&self, world: &World, times: &[f64]) -> Vec<f64> {
+    pub fn of_world(&self, world: &World, times: &[f64]) -> Vec<f64> {
         let predicted = world.predict(self.given, times);
         predicted.map_or_else(|| self.each(|_| f64::NAN), |predicted| self.column.of_itself(&predicted))
     }
@@ -69,11 +69,6 @@ impl<'a> Exact<'a> {
     pub fn at(&self, time: impl Fn(usize) -> f64) -> Vec<f64> {
         let times: Vec<f64> = (0..self.given.times.len()).map(time).collect();
         self.of_world(self.world, &times)
-    }
-
-    /// The exact values from the other end.
-    pub fn turned(&self) -> Vec<f64> {
-        self.of_world(&World { ends: Ends::UpsideDown, ..self.world.clone() }, &self.given.times)
     }
 
     /// The mean since the start, times a measure of the time.
@@ -132,7 +127,7 @@ impl<'a> Exact<'a> {
 }
 
 /// Whether a column has several outputs, and other times are computed at no great cost.
-pub fn has_other_times(x: &Exact<'_>) -> bool {
+pub fn is_timed(x: &Exact<'_>) -> bool {
     x.column.own_outputs().len() > 1 && x.world.is_slow() && !x.world.kind.row().is_prepared
 }
 

@@ -1,7 +1,7 @@
 //! The search: the explanation, a world with a reading of each column, that leaves least for the fewest mistakes.
 
 use super::columns::{Column, Given, MOST};
-use super::hypotheses::{CLOCK, Cause, NAME, ONE_STATE, READINGS, Scale, UPSIDE_DOWN, WORLDS};
+use super::hypotheses::{Cause, NAME, ONE_STATE, READINGS, Scale, WORLDS};
 use super::readings::{Exact, Reading, of_row};
 use super::world::World;
 use super::{patterns, shown};
@@ -27,21 +27,16 @@ const PENALTY: f64 = 3.0;
 /// Most names and alternatives that a sentence offers.
 const MOST_NAMES: usize = 3;
 
-/// The world of a cause in another world, with the number that fits best, if that is clear.
-fn world_of(
-    cause: &Cause,
-    (base, before): &(World, Reading),
-    given: &Given<'_>,
-    in_units: bool,
-) -> Option<(World, Reading)> {
-    let of = |number: f64| (cause.of)(given, base.clone(), number);
+/// The world of a cause, with the number that fits best, if that is clear.
+fn world_of(cause: &Cause, given: &Given<'_>, in_units: bool) -> Option<(World, Reading)> {
+    let of = |number: f64| (cause.of)(given, given.own.clone(), number);
     let with = |number: f64, asked: &str, fitted: usize| {
-        let side = if number < 0.0 { "before" } else { "after" };
-        let said = cause.said.replace("{}", &shown(number.abs())).replace("{side}", side);
-        let said = before.said.clone() + &said;
-        let asked = [&before.asked[..], &[asked.to_owned()]].concat();
-        let (count, fitted) = (before.count + 1, before.fitted + fitted);
-        Some((of(number), Reading { said, asked, count, fitted, ..Reading::default() }))
+        let [side, late] = if number < 0.0 { ["before", "late"] } else { ["after", "early"] };
+        let filled = |text: &str| {
+            text.replace("{}", &shown(number.abs())).replace("{side}", side).replace("{late}", late)
+        };
+        let (said, asked) = (filled(cause.said), vec![filled(asked)]);
+        Some((of(number), Reading { said, asked, count: 1, fitted, ..Reading::default() }))
     };
     let Some(range) = cause.range else {
         return with(0.0, cause.asked, 0);
@@ -53,7 +48,8 @@ fn world_of(
     let ends = if is_log { range.map(ln) } else { range };
     let (at, least) = minimum(&value, ends);
     let (fitted, bound) = (number(at), least + ln(AS_WELL));
-    if [value(ends[0]), value(ends[1]), left(base, given, in_units)].iter().any(|other| *other <= bound) {
+    if [value(ends[0]), value(ends[1]), left(&given.own, given, in_units)].iter().any(|other| *other <= bound)
+    {
         return None;
     }
     let mut names = (cause.names)(given);
@@ -64,13 +60,13 @@ fn world_of(
     let asked: Vec<&str> = names.iter().take(MOST_NAMES).map(|(_, asked)| &**asked).collect();
     match names.first() {
         Some((name, _)) => with(*name, &asked.join(", or "), 0),
-        None => with(fitted, &(cause.asked_of)(given, fitted), 1),
+        None => with(fitted, &(cause.asked.to_owned() + &(cause.asked_of)(given, fitted)), 1),
     }
 }
 
 /// The time at which one output matches best, s, with the error that is left.
 pub fn one_time(given: &Given<'_>) -> Option<(f64, f64)> {
-    let (world, _) = world_of(&ONE_STATE, &(given.own.clone(), Reading::default()), given, false)?;
+    let (world, _) = world_of(&ONE_STATE, given, false)?;
     Some((world.clock[1], exp(left(&world, given, false))))
 }
 
@@ -195,12 +191,7 @@ fn as_good<'a>(best: &Reading, others: impl Iterator<Item = &'a Reading>) -> Vec
 /// The best explanation of some of the samples; `whole` has all of them, for patterns. Of outputs that are only some of
 /// the file the soil and the load are those of the others.
 pub fn explanation(given: &Given<'_>, whole: &Given<'_>, is_part: bool) -> Option<Explanation> {
-    let own = (given.own.clone(), Reading::default());
-    let mut all = vec![Explanation::of(own.clone(), given, whole)?];
-    let add = |all: &mut Vec<Explanation>, world: Option<(World, Reading)>| {
-        all.extend(world.and_then(|world| Explanation::of(world, given, whole)));
-        all.sort_by(|a, b| a.open.cmp(&b.open).then(cost(&a.sum).total_cmp(&cost(&b.sum))));
-    };
+    let mut all = vec![Explanation::of((given.own.clone(), Reading::default()), given, whole)?];
     // No number of all columns is wrong where one column is right.
     let is_any_right = given.columns.iter().any(Column::is_right);
     // Of zeros alone nothing is told by another world.
@@ -212,13 +203,11 @@ pub fn explanation(given: &Given<'_>, whole: &Given<'_>, is_part: bool) -> Optio
         let is_enough = *open == 0 && sum.left <= CLEAR && sum.count <= 1 && world.clock[0] > 0.0;
         if cause.range.is_none() || !(is_any_right || is_enough) {
             // Times go with other units.
-            let in_units = || cause.is_of_times.then(|| world_of(cause, &own, given, true)).flatten();
-            add(&mut all, world_of(cause, &own, given, false).or_else(in_units));
+            let in_units = || cause.is_of_times.then(|| world_of(cause, given, true)).flatten();
+            let world = world_of(cause, given, false).or_else(in_units);
+            all.extend(world.and_then(|world| Explanation::of(world, given, whole)));
+            all.sort_by(|a, b| a.open.cmp(&b.open).then(cost(&a.sum).total_cmp(&cost(&b.sum))));
         }
-    }
-    if !is_part && all[0].open > 0 {
-        let turned = world_of(&UPSIDE_DOWN, &own, given, false);
-        add(&mut all, turned.and_then(|turned| world_of(&CLOCK, &turned, given, true)));
     }
     let mut all = all.into_iter();
     let mut best = all.next()?;
