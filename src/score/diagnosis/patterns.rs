@@ -19,7 +19,7 @@ const NOTABLE: f64 = 0.01;
 const WRONG: f64 = 3e-3;
 /// Share of the error that another order may leave.
 const ORDERED: f64 = 0.2;
-/// Share of an error that sits in one place, and its share by which those of all outputs may differ.
+/// Share of an error that sits in one place.
 const IN_ONE_PLACE: f64 = 0.9;
 /// Correlation below which a column does not vary as the exact one.
 const UNLIKE: f64 = 0.5;
@@ -38,7 +38,7 @@ fn reading(said: String, asked: &str, [count, fitted]: [usize; 2], left: f64, co
     Reading { said, asked: vec![asked.to_owned()], count, fitted, key, left, or: Vec::new() }
 }
 
-/// One number at places where nothing was written: an output, a place, every second row.
+/// One number at places where nothing was written: an output, a place, here and there.
 fn blank(column: &Column, given: &Given<'_>) -> Option<Reading> {
     let (values, exact, height) = (&column.values, &column.exact, given.own.parameters.height);
     let size = column.size(exact, None);
@@ -51,8 +51,8 @@ fn blank(column: &Column, given: &Given<'_>) -> Option<Reading> {
     let blanks: Vec<usize> = seen.iter().copied().filter(|at| values[*at] == blank).collect();
     let filled = values.iter().zip(exact).map(|(value, exact)| if *value == blank { blank } else { *exact });
     let held = Held { values: filled.collect(), ..column.itself(exact) };
-    let is_seldom = blanks.len() > 1 && 4 * (seen.len() - blanks.len()) >= seen.len();
-    let left = column.accepts(&held, 1.0).filter(|_| is_seldom)?;
+    let are_some = blanks.len() > 1 && 4 * (seen.len() - blanks.len()) >= seen.len();
+    let left = column.accepts(&held, 1.0).filter(|_| are_some)?;
     // The groups of which all values are blank, if these are all blanks.
     let whole = |groups: &[usize]| {
         let mut all: Vec<usize> = blanks.iter().map(|at| groups[*at]).collect();
@@ -78,8 +78,8 @@ fn blank(column: &Column, given: &Given<'_>) -> Option<Reading> {
     Some(reading(said, asked, [1, 0], left, column))
 }
 
-/// Values that are too large and too small in turn, from line to line of samples or from cell to cell: by a share of the
-/// exact values, or of the load.
+/// Values that are too large and too small in turn, from line to line of samples or from cell to cell, by a share of the exact
+/// values.
 fn checkerboard(column: &Column, given: &Given<'_>) -> Option<Reading> {
     let up = rank(&column.heights, given.own.parameters.height);
     let along = rank(&column.distances, given.own.parameters.length);

@@ -174,7 +174,7 @@ pub fn of_row(x: &Exact<'_>, row: &Row, is_own: bool) -> Vec<Reading> {
             }
             // At small strain one column alone cannot tell the load from a factor of its own.
             if asked[0].ends_with(WHERE_WRITTEN) && x.given.columns.len() == 1 {
-                asked[0] = format!("{}, or {}", is_load(scale.factor * number), asked[0]);
+                asked[0] = format!("{}, or {}", is_load(scale.factor.abs() * number), asked[0]);
             }
             let said = match scale.factor {
                 1.0 => format!("matches {}", filled(row.said)),

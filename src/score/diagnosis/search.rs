@@ -9,20 +9,19 @@ use oedometer_soil::elementary::{exp, ln};
 
 /// Multiple of its residual that a right column may have in another world, and the least that it may have.
 const SPOILT: [f64; 2] = [3.0, 3e-4];
-/// Multiple of its residual that a column which is not explained may have in another world.
 /// Errors below it do not tell explanations apart, and what is left below the other is next to nothing.
 pub const FLOOR: f64 = 1e-5;
 const CLEAR: f64 = 1e-3;
 /// Logarithm of how much better an explanation must be for a mistake more, and for a fitted number more.
 const PER_MISTAKE: f64 = 1.1;
 const PER_FIT: f64 = 1.2;
-/// Multiple of the least error up to which another explanation is as good, and of its own that a column which is not
-/// explained has in another world.
+/// Multiple of the least error up to which another explanation is as good, and of its residual that a column which stays
+/// wrong may have in another world.
 const AS_WELL: f64 = 1.5;
 /// Trials of a number over its range, and halvings of the step around the best.
 const TRIALS: usize = 50;
 const HALVINGS: usize = 16;
-/// What a mistake of a column must gain in a fit.
+/// Factor by which a mistake of a column must lessen the error in a fit.
 const PENALTY: f64 = 3.0;
 /// Most names and alternatives that a sentence offers.
 const MOST_NAMES: usize = 3;
