@@ -148,6 +148,16 @@ mod tests {
     }
 
     #[test]
+    fn the_time_of_an_output_is_on_a_clock_except_where_a_plate_is_pushed() {
+        for (scene, told) in
+            [(&oedometer_scenes::TERZAGHI, "T_v = 0.2 (16.35 s)"), (&oedometer_scenes::FOOTING, "u/B = 0.2")]
+        {
+            let case = Case::seed(crate::case::Task::Solve, scene);
+            assert_eq!(output_time(&case, 0.2), told);
+        }
+    }
+
+    #[test]
     fn quantities_places_references_axes_and_orders_have_words_of_their_own() {
         use Quantity::{Displacement, EffectiveStress, LoadFactor, Pressure, Settlement};
         assert_eq!(
