@@ -98,9 +98,7 @@ pub fn score_files(
     let (mapping, runs) = runs_with(files, meaning, SolvedBody::of(case), Axes::of(case.scene))?;
     let comparison = Comparison { are_cells_found: meaning.cells.is_empty(), ..asked.comparison(&mapping) };
     let mut results = Results::of(runs, &comparison)?;
-    if let Some((series, cells)) = results.series() {
-        results.keep_series(&series, &cells);
-    }
+    results.join_meshes();
     Ok(results.all.into_iter().map(|one| (one.name(), one.score)).collect())
 }
 
@@ -462,8 +460,9 @@ mod tests {
         assert!(alone[0] != alone[1] && alone[1] != alone[2], "each has its own");
         assert!(alone.iter().flatten().all(|row| row.reference == "terzaghi"));
         // Meshes in one order or another make the same series; their cells are found or given.
-        let rows =
-            |score: &Score| score.series.iter().map(|row| (row.cells.clone(), row.class)).collect::<Vec<_>>();
+        let rows = |score: &Score| {
+            score.series.iter().map(|row| (row.cells.clone(), row.classification.class)).collect::<Vec<_>>()
+        };
         assert!(found.iter().all(|(_, score)| rows(score) == rows(&found[0].1) && !score.series.is_empty()));
         assert_eq!(found[0].1.series[0].cells, [10, 20, 40]);
         let told = of(&[foreign.join("none.pvd")], None).expect_err("no file").to_string();

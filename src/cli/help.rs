@@ -81,28 +81,8 @@ const GROUPS: [Group; 5] = [
     ),
 ];
 
-/// Options for clusters, other builds and the development of methods.
-const EXPERT: [&str; 19] = [
-    "shard",
-    "balance",
-    "resume",
-    "compress",
-    "engine",
-    "tasks",
-    "partition",
-    "time",
-    "cores",
-    "sbatch",
-    "attempts",
-    "detach",
-    "dry_run",
-    "case_files",
-    "annotate",
-    "summary",
-    "despite_failing",
-    "point_wise",
-    "time_tolerance",
-];
+/// Heading of the options for clusters, other builds and the development of methods.
+pub const EXPERT: &str = "Expert options";
 
 /// The command line with its help texts.
 pub fn dressed(command: clap::Command) -> clap::Command {
@@ -113,10 +93,6 @@ pub fn dressed(command: clap::Command) -> clap::Command {
                 .then(|| format!("Examples:\n  oedometer {}\n  oedometer {}", examples[0], examples[1]))
         };
         let examples = GROUPS.iter().flat_map(|(_, commands)| *commands).find_map(of_command);
-        let command = command.mut_args(|argument| {
-            let is_expert = EXPERT.contains(&argument.get_id().as_str());
-            if is_expert { argument.help_heading("Expert options") } else { argument }
-        });
         command.after_help(examples.unwrap_or_default())
     });
     plain(command.help_template(format!(
@@ -180,19 +156,6 @@ mod tests {
                     panic!("{example}: {error}");
                 }
             }
-        }
-    }
-
-    #[test]
-    fn every_expert_option_is_one_of_a_command() {
-        let commands = command();
-        let is_there = |id: &str| {
-            commands
-                .get_subcommands()
-                .any(|command| command.get_arguments().any(|argument| argument.get_id() == id))
-        };
-        for id in EXPERT {
-            assert!(is_there(id), "{id}");
         }
     }
 }

@@ -29,7 +29,6 @@ use oedometer_scenes::column::column_parameters;
 use oedometer_wording::count_of;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 /// A case with a sentence about it.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
@@ -41,7 +40,7 @@ pub struct CaseNote {
 }
 
 /// Everything found about one study.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct StudyCheck {
     /// Name of the study.
     pub study: String,
@@ -59,8 +58,10 @@ pub struct StudyCheck {
     pub proposals: Vec<String>,
     /// Whether golden values are compared; the study may leave the verdict to its expectations.
     pub compares_golden: bool,
-    /// Differences from the golden values, or why golden values are missing; none where they are not compared.
-    pub golden: Result<Vec<Difference>, GoldenError>,
+    /// Why there are no golden values to compare with.
+    pub golden_problem: Option<GoldenError>,
+    /// Differences from the golden values.
+    pub differences: Vec<Difference>,
     /// The differences by kind, with what those of a kind have in common.
     pub groups: Vec<DifferenceGroup>,
     /// Cases with such differences: accuracy and cost together, the case with the worst first.
@@ -123,11 +124,11 @@ impl Serialize for StudyCheck {
         out.serialize_field("failed_cases", &self.failed_cases)?;
         out.serialize_field("unsound_records", &self.unsound)?;
         out.serialize_field("golden_values_that_agree", &self.agreeing)?;
-        out.serialize_field("golden_problem", &self.golden.as_ref().err().map(ToString::to_string))?;
+        out.serialize_field("golden_problem", &self.golden_problem.as_ref().map(ToString::to_string))?;
         out.serialize_field("proposed_expectations", &self.proposals)?;
         out.serialize_field("cases_of_other_inputs", &self.other_inputs)?;
         out.serialize_field("groups", &self.groups)?;
-        out.serialize_field("differences", self.differences())?;
+        out.serialize_field("differences", &self.differences)?;
         out.serialize_field("accuracy_and_cost", &self.changes)?;
         out.serialize_field("taken_over", &self.taken_over)?;
         out.serialize_field("warnings", &self.warnings)?;
@@ -160,18 +161,18 @@ impl StudyCheck {
         let unused = (golden.is_ok() && !compares_golden).then(|| {
             "the golden values of this study are not compared, because it has `golden = \"none\"`".to_owned()
         });
-        let golden = golden.map(|golden| golden.allowing(study.golden));
-        let golden = if compares_golden { golden } else { Err(GoldenError::Missing(PathBuf::new())) };
         let cases: Vec<&Case> = records.iter().map(|record| &record.case).collect();
-        let mut other_inputs = Vec::new();
-        let golden = golden.map(|golden| {
-            let (golden, others) = absent.without(golden).beside(&cases);
-            let golden = if study.has_dates { golden.at_the_times_of(&cases, &others) } else { golden };
-            other_inputs = others;
-            golden
-        });
-        // Of a study without golden values none is compared.
-        let values = golden.as_ref().map_or_else(|_| BTreeMap::new(), |_| values_of(records));
+        let compared = match golden {
+            _ if !compares_golden => Self::default(),
+            Err(problem) => Self { golden_problem: Some(problem), ..Self::default() },
+            Ok(golden) => {
+                let (golden, other_inputs) = absent.without(golden.allowing(study.golden)).beside(&cases);
+                let golden =
+                    if study.has_dates { golden.at_the_times_of(&cases, &other_inputs) } else { golden };
+                let compared = Self::of_values(&values_of(records), &golden).with_places(records);
+                Self { other_inputs, ..compared }
+            }
+        };
         let notes = |of: &dyn Fn(&Record) -> Vec<String>| {
             let of_record = |record: &Record| {
                 let label = record.case.label();
@@ -180,16 +181,15 @@ impl StudyCheck {
             };
             records.iter().flat_map(of_record).collect::<Vec<_>>()
         };
-        let mut check = Self {
+        Self {
+            study: study.name.clone(),
             failed_cases: notes(&|record| {
                 let is_foreseen = record.status.is_skipped() || study.foresees(record);
                 let failure = record.status.failure().filter(|_| !is_foreseen);
                 failure.map(ToString::to_string).into_iter().collect()
             }),
-            // Partial results of a failed run are not judged.
-            other_inputs,
-            input_changes: Vec::new(),
             proposals: proposals(study, paths),
+            // Partial results of a failed run are not judged.
             unsound: notes(&|record| match record.status {
                 Status::Ok if !study.foresees_complaints(record) => soundness::complaints(record),
                 _ => Vec::new(),
@@ -205,12 +205,8 @@ impl StudyCheck {
                 .collect(),
             diagnoses: diagnoses(study, records),
             compares_golden,
-            ..Self::of_values(&study.name, &values, golden).with_places(records)
-        };
-        if !compares_golden {
-            check.golden = Ok(Vec::new());
+            ..compared
         }
-        check
     }
 
     /// Adds the places with the largest errors of records that cannot be made again.
@@ -260,40 +256,15 @@ impl StudyCheck {
     }
 
     /// Compares values alone.
-    fn of_values(
-        name: &str,
-        values: &BTreeMap<GoldenKey, f64>,
-        golden: Result<GoldenFile, GoldenError>,
-    ) -> Self {
-        let (groups, golden) = match golden {
-            Err(error) => (Vec::new(), Err(error)),
-            Ok(golden) => {
-                let differences = compare(&golden, values);
-                let new = values.keys().filter(|key| !golden.values.contains_key(*key));
-                (groups_of(&differences, golden.values.keys().chain(new)), Ok(differences))
-            }
-        };
-        let changed =
-            golden.as_ref().map_or(values.len(), |all| all.iter().filter(|one| one.found.is_some()).count());
+    fn of_values(values: &BTreeMap<GoldenKey, f64>, golden: &GoldenFile) -> Self {
+        let differences = compare(golden, values);
+        let new = values.keys().filter(|key| !golden.values.contains_key(*key));
         Self {
-            study: name.to_owned(),
-            failed_cases: Vec::new(),
-            unsound: Vec::new(),
-            judgements: Vec::new(),
-            other_inputs: Vec::new(),
-            input_changes: Vec::new(),
-            proposals: Vec::new(),
-            agreeing: values.len() - changed,
-            groups,
-            changes: golden.as_deref().map(case_changes).unwrap_or_default(),
-            golden,
-            compares_golden: true,
-            expected: 0,
-            unjudged: 0,
-            held_back: 0,
-            taken_over: Vec::new(),
-            warnings: Vec::new(),
-            diagnoses: Vec::new(),
+            agreeing: values.len() - differences.iter().filter(|one| one.found.is_some()).count(),
+            groups: groups_of(&differences, golden.values.keys().chain(new)),
+            changes: case_changes(&differences),
+            differences,
+            ..Self::default()
         }
     }
 
@@ -357,15 +328,10 @@ impl StudyCheck {
         objections
     }
 
-    /// Differences from the golden values; empty without a golden file.
-    pub fn differences(&self) -> &[Difference] {
-        self.golden.as_deref().unwrap_or_default()
-    }
-
     /// Whether a value moved that no better accuracy or lower cost of its case makes up for.
     fn has_moved(&self) -> bool {
         let excused = |case: &str| self.changes.iter().any(|change| change.case == case && change.is_stale());
-        self.differences().iter().any(|one| one.change == Change::Moved && !excused(&one.key.case))
+        self.differences.iter().any(|one| one.change == Change::Moved && !excused(&one.key.case))
     }
 
     /// How the check came out, the worst first: a verdict, an unsound record or a value that moved,
@@ -376,10 +342,13 @@ impl StudyCheck {
         } else if !self.failed_cases.is_empty() {
             CheckEnd::CaseFailed
         } else if self.held_back > 0
-            && (!self.compares_golden || matches!(&self.golden, Err(error) if error.is_missing()))
+            && (!self.compares_golden || self.golden_problem.as_ref().is_some_and(GoldenError::is_missing))
         {
             CheckEnd::HeldBack
-        } else if self.golden.is_err() || !self.differences().is_empty() || !self.other_inputs.is_empty() {
+        } else if self.golden_problem.is_some()
+            || !self.differences.is_empty()
+            || !self.other_inputs.is_empty()
+        {
             CheckEnd::Golden
         } else {
             CheckEnd::Pass
@@ -476,8 +445,6 @@ mod tests {
 
     #[test]
     fn a_check_ends_by_the_worst_that_it_found() {
-        let empty =
-            || StudyCheck::of_values("t", &BTreeMap::new(), Err(GoldenError::Missing("t.csv".into())));
         let named = |case: &str| crate::golden::measure::key(case, 0.1, "pressure points terzaghi");
         let difference = |case: &str, change: Change| {
             let (golden, found) = (Some(1.0), Some(2.0));
@@ -499,7 +466,7 @@ mod tests {
             (vec![one, two], better, CheckEnd::Failed),
         ] {
             let told = format!("{differences:?} {changes:?}");
-            let check = StudyCheck { changes, golden: Ok(differences), ..empty() };
+            let check = StudyCheck { differences, changes, ..StudyCheck::default() };
             assert_eq!(check.end(), end, "{told}");
             let note = || vec![CaseNote { case: "a".to_owned(), sentence: "it failed".to_owned() }];
             let failed = StudyCheck { failed_cases: note(), ..check };
@@ -514,9 +481,10 @@ mod tests {
         let values = |list: [(&str, f64); 3]| list.map(|(name, value)| (named(name), value)).into();
         let golden: BTreeMap<GoldenKey, f64> = values([("same", 1.0), ("moved", 2.0), ("gone", 1.0)]);
         let file = GoldenFile { values: golden, ..GoldenFile::of("t", &[], "a test") };
-        let check =
-            StudyCheck::of_values("t", &values([("same", 1.0), ("moved", 9.0), ("new", 1.0)]), Ok(file));
-        assert_eq!((check.agreeing, check.differences().len(), &*check.study), (1, 3, "t"));
-        assert_eq!((empty().agreeing, empty().end()), (0, CheckEnd::Golden));
+        let values = values([("same", 1.0), ("moved", 9.0), ("new", 1.0)]);
+        let check = StudyCheck::of_values(&values, &file);
+        assert_eq!((check.agreeing, check.differences.len()), (1, 3));
+        let missing = Some(GoldenError::Missing("t.csv".into()));
+        assert_eq!(StudyCheck { golden_problem: missing, ..StudyCheck::default() }.end(), CheckEnd::Golden);
     }
 }

@@ -7,7 +7,7 @@ use crate::judge::study_results::StudyResults;
 use crate::questions::finding::{Finding, Place, Question, best};
 use crate::questions::words;
 use crate::record::{Record, Status};
-use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
+use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::table::{Cell, Mood, Table, columns};
@@ -206,14 +206,8 @@ fn over_mesh(audit: &Audit) -> Figure {
     chart.subtitle = Some(format!("{}, T_v = {}", audit.method, audit.time_factor));
     let series = |pairing: &Pairing| Series::new(pairing.name(), pairing.pressure.clone());
     chart.series.extend(audit.pairings.iter().map(series));
-    let falls = audit.pairings.iter().filter_map(|pairing| match pairing.pressure.as_slice() {
-        [coarse, _, .., fine] => Some((coarse.1 / fine.1, pairing.name())),
-        _ => None,
-    });
-    let steepest = falls.max_by(|a, b| a.0.total_cmp(&b.0));
-    chart.triangles.extend(steepest.map(|(_, beside)| SlopeTriangle { slope: 2.0, beside }));
     let caption = "With the right equations the error falls with every mesh; with wrong ones it stops at \
-                   the difference between the two theories. Triangle: second order.";
+                   the difference between the two theories.";
     Figure::new("audit-pressure", chart, caption)
 }
 
@@ -362,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn every_pairing_is_drawn_and_told_and_the_steepest_of_three_meshes_has_the_triangle() {
+    fn every_pairing_is_drawn_and_told() {
         let pairing = |law, continuity, error: Option<f64>, pressure: &[(f64, f64)]| Pairing {
             law,
             continuity,
@@ -391,7 +385,6 @@ mod tests {
         assert_eq!(mesh.series[2].points, audit.pairings[2].pressure);
         let subtitles = [&time, &mesh].map(|chart| chart.subtitle.clone().unwrap_or_default());
         assert_eq!(subtitles, ["M, 4 cells", "M, T_v = 0.5"]);
-        assert_eq!(mesh.triangles, [SlopeTriangle { slope: 2.0, beside: "right, c".to_owned() }]);
         assert_eq!(time.rules, [Rule { at: 0.0, label: "Xie & Leo".to_owned() }]);
         let told: Vec<Vec<String>> =
             table(&audit).rows.iter().map(|row| row[1..].iter().map(Cell::show).collect()).collect();

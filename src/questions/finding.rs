@@ -108,7 +108,7 @@ impl Serialize for Finding {
 }
 
 /// Version of the layout of `findings.json`; it rises when a key goes or changes its meaning.
-const SCHEMA: u32 = 3;
+const SCHEMA: u32 = 4;
 
 /// What `findings.json` has beside a report, and beside the page of a study.
 pub fn findings_json(findings: &[Finding]) -> Value {

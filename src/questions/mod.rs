@@ -25,7 +25,6 @@ pub mod settlement;
 pub mod stability;
 pub mod stiffness_sweep;
 pub mod time_step;
-pub mod uncertainty;
 pub mod within;
 pub mod words;
 pub mod work_precision;
@@ -49,7 +48,6 @@ use crate::questions::setting::SETTING;
 use crate::questions::settlement::SETTLEMENT;
 use crate::questions::stability::STABILITY;
 use crate::questions::time_step::TIME_STEP;
-use crate::questions::uncertainty::UNCERTAINTY;
 use crate::questions::within::WITHIN;
 use crate::race::RaceFindings;
 use oedometer_exact::ExactError;
@@ -73,7 +71,6 @@ pub static QUESTIONS: &[&Question] = &[
     &LOAD_CURVES,
     &PROFILES,
     &STABILITY,
-    &UNCERTAINTY,
     &CHECKS,
     &OUTSIDE_RUNS,
     &AUDIT,

@@ -3,6 +3,7 @@
 use crate::race::RaceFindings;
 use crate::race::finish::{Budget, OTHER_TOLERANCES, RaceQuantity, Reason, Terms};
 use crate::race::group::{Group, races};
+use crate::race::profile::Profile;
 use crate::race::situation::{Entry, Situation};
 use crate::render::table::{Cell, Table, columns};
 
@@ -65,17 +66,20 @@ fn row(group: Group, situation: &Situation, entry: &Entry, terms: &Terms) -> Vec
 
 /// The performance profiles: the share of problems at each multiple of the least cost.
 pub fn profile_table(findings: &RaceFindings) -> Table {
-    let rows = findings.profiles.iter().flat_map(|one| {
-        one.profiles.iter().flat_map(move |profile| {
-            profile.steps.iter().map(move |(tau, share)| {
-                vec![
-                    one.group.name().into(),
-                    one.read_out.name().into(),
-                    one.quantity.name().into(),
-                    profile.method.as_str().into(),
-                    Cell::Number(*tau),
-                    Cell::Number(*share),
-                ]
+    let rows = races().flat_map(|(group, read_out)| {
+        RaceQuantity::EACH.into_iter().flat_map(move |quantity| {
+            let profiles = findings.profiles(group, read_out, quantity).into_iter();
+            profiles.flat_map(move |Profile { method, steps }| {
+                steps.into_iter().map(move |(tau, share)| {
+                    vec![
+                        group.name().into(),
+                        read_out.name().into(),
+                        quantity.name().into(),
+                        method.as_str().into(),
+                        Cell::Number(tau),
+                        Cell::Number(share),
+                    ]
+                })
             })
         })
     });

@@ -1,21 +1,24 @@
-//! One error of several methods over an axis of refinement as a figure: a line per path, slopes that lines come near, and the
+//! One error of several methods over an axis of refinement as a figure: a line per path, guides of the orders that lines come near, and the
 //! floor that they share.
 
 use crate::case::Sample;
 use crate::case::grouping::grouped;
 use crate::questions::series::{Measured, Series, SeriesTable};
 use crate::questions::words;
-use crate::render::chart::{self, Chart, ChartAxis, Rule, Size, SlopeTriangle};
+use crate::render::chart::{self, Chart, ChartAxis, Rule, Size};
 use crate::render::number;
 use crate::render::page::Figure;
 use crate::study::expectation::{Axis, NEXT_FINER};
 use oedometer_convergence::Class;
+use oedometer_soil::elementary;
 use oedometer_wording::count_of;
 
-/// Slopes of the triangles: of first and of second order.
-const SLOPES: [f64; 2] = [1.0, 2.0];
-/// Distance of an order from a slope up to which its line has the triangle.
+/// Slopes of guides, of first and of second order, with the numbers of their dashes.
+const SLOPES: [(f64, usize); 2] = [(1.0, 2), (2.0, 3)];
+/// Distance of an order from a slope up to which its line has a guide.
 const NEAR: f64 = 0.3;
+/// Where a guide begins, over the error on the finest level: below its line.
+const BELOW: f64 = 0.5;
 /// Floors within this factor are one line in a figure.
 const SAME_FLOOR: f64 = 1.1;
 /// Most lines of a figure with several soils, and with one.
@@ -62,7 +65,8 @@ pub fn figure(found: &SeriesTable<'_>, measured: Measured) -> Option<Figure> {
         .series
         .extend(lines.iter().zip(&names).map(|(one, name)| chart::Series::new(name.clone(), points_of(one))));
     if found.has_orders() {
-        chart.triangles = triangles(&lines, &names);
+        let guides = near(&lines).into_iter();
+        chart.series.extend(guides.filter_map(|(slope, dashes, line)| guide(lines[line], slope, dashes)));
     }
     let floor = shared_floor(&lines).filter(|_| found.axis == Axis::Cells);
     chart.rules.extend(floor.map(|(at, line)| {
@@ -131,16 +135,22 @@ fn name_of(one: &Series<'_>, sample: Sample) -> String {
     }
 }
 
-/// Each slope that a series comes near, beside the first that does.
-fn triangles(lines: &[&Series<'_>], names: &[String]) -> Vec<SlopeTriangle> {
+/// The slopes with the first line that comes near each, and the dashes of its guide.
+fn near(lines: &[&Series<'_>]) -> Vec<(f64, usize, usize)> {
     let is_near = |one: &Series<'_>, slope: f64| {
         one.summary.finest.as_ref().is_ok_and(|order| (order - slope).abs() < NEAR)
     };
-    let near = |slope: f64| {
-        let line = lines.iter().position(|one| is_near(one, slope))?;
-        Some(SlopeTriangle { slope, beside: names[line].clone() })
-    };
-    SLOPES.into_iter().filter_map(near).collect()
+    let line = |slope: f64| lines.iter().position(|one| is_near(one, slope));
+    SLOPES.into_iter().filter_map(|(slope, dashes)| Some((slope, dashes, line(slope)?))).collect()
+}
+
+/// A guide below a line, from its finest level to its coarsest.
+fn guide(one: &Series<'_>, slope: f64, dashes: usize) -> Option<chart::Series> {
+    let points = points_of(one);
+    let ((coarse, _), (fine, error)) = (*points.first()?, *points.last()?);
+    let start = BELOW * error;
+    let end = start * elementary::powf(coarse / fine, slope);
+    Some(chart::Series::theory(format!("order {slope}"), vec![(fine, start), (coarse, end)]).slot(dashes))
 }
 
 /// The floor that a figure shows as one line, and its owner: the only limited series, or all series where they end
@@ -218,15 +228,12 @@ mod tests {
         }
         let near = |[a, b]: [f64; 2]| {
             of([a, b, 9.0].map(|order| (None, order)), 2, |lines| {
-                let names = ["0", "1"].map(str::to_owned);
-                let found = triangles(lines, &names);
-                found.into_iter().map(|near| (near.slope, near.beside)).collect::<Vec<_>>()
+                super::near(lines).into_iter().map(|(slope, _, line)| (slope, line)).collect::<Vec<_>>()
             })
         };
-        let told = |slope: f64, line: &str| (slope, line.to_owned());
         assert_eq!(near([0.2, 3.0]), []);
-        assert_eq!(near([2.1, 0.9]), [told(1.0, "1"), told(2.0, "0")]);
-        assert_eq!(near([1.8, 1.9]), [told(2.0, "0")], "the first of several");
+        assert_eq!(near([2.1, 0.9]), [(1.0, 1), (2.0, 0)]);
+        assert_eq!(near([1.8, 1.9]), [(2.0, 0)], "the first of several");
     }
 
     #[test]

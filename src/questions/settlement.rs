@@ -95,10 +95,9 @@ struct SettlementRow {
 /// When a reference refuses a case.
 fn settlements(study: &Study, records: &[Record]) -> Result<Vec<RunSettlements>, ExactError> {
     let within = within(study, records);
-    let settlement = within.iter().find(|answer| answer.quantity == Quantity::Settlement);
+    let settlement = within.iter().find(|answer| answer.best.quantity == Quantity::Settlement);
     let (Some(answer), Some(kind)) = (settlement, study.references.first()) else { return Ok(Vec::new()) };
-    let answering =
-        answer.bounds.iter().find_map(|bound| bound.choice.as_ref()).unwrap_or(&answer.best).case.as_str();
+    let answering = answer.choices.iter().flatten().next().unwrap_or(&answer.best).case.as_str();
     let Some(named) = records.iter().find(|record| record.hash == answering) else { return Ok(Vec::new()) };
     let alike = records.iter().filter(|record| choice(&record.case) == choice(&named.case));
     let problems = grouped(alike, |record| problem(&record.case));
@@ -175,7 +174,7 @@ mod tests {
         let (study, records) = solved("s", text);
         let answers = within(&study, &records);
         let tables = settlements(&study, &records).expect("a theory");
-        let chosen = answers[0].bounds[0].choice.as_ref().expect("within 1 %");
+        let chosen = answers[0].choices[0].as_ref().expect("within 1 %");
         let run = records.iter().find(|record| record.hash == chosen.case).expect("its run");
         assert_eq!((tables.len(), tables[0].run.as_str()), (1, run.case.label().as_str()));
         let modulus = run.case.material.oedometric_modulus();

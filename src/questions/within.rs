@@ -15,7 +15,6 @@ use crate::render::page::Block;
 use crate::render::table::{Cell, Mood, Table, columns};
 use crate::study::check::Study;
 use oedometer_problem::time_step::TimeStep;
-use oedometer_scenes::scene::Clock;
 use oedometer_wording::duration;
 use serde::Serialize;
 
@@ -30,46 +29,15 @@ pub static WITHIN: Question = Question {
 
 /// Every number and name of the sentence.
 #[derive(Serialize)]
-struct Facts {
+struct Facts<'a> {
     /// The larger bound.
     bound: f64,
-    /// Problems that every choice solves: soils, loads and geometries.
+    /// Number of problems.
     problems: usize,
-    /// Quantities that come within it, each by the cheapest choice.
-    reached: Vec<ChoiceFacts>,
-    /// Quantities that do not, each with the choice of the least error.
-    missed: Vec<MissedFacts>,
-}
-
-/// A method and mesh with the largest error over all outputs and problems.
-#[derive(Serialize)]
-struct ChoiceFacts {
-    /// Quantity.
-    quantity: Quantity,
-    /// Method, or name of another solver.
-    method: String,
-    /// Cells over the height.
-    cells: usize,
-    /// Largest error.
-    error: f64,
-    /// Time factor of the output that has it, and what it is called.
-    time_factor: f64,
-    factor_name: &'static str,
-    /// Time of that output, s.
-    seconds: f64,
-}
-
-/// The choice with the least error.
-#[derive(Serialize)]
-struct MissedFacts {
-    /// Quantity.
-    quantity: Quantity,
-    /// Method, or name of another solver.
-    method: String,
-    /// Cells over the height.
-    cells: usize,
-    /// Largest error.
-    error: f64,
+    /// The cheapest choice for each quantity that a run keeps within it.
+    reached: Vec<&'a WithinFinding>,
+    /// For each of the others the choice with the least error.
+    missed: Vec<&'a WithinFinding>,
 }
 
 fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
@@ -79,30 +47,11 @@ fn ask(studies: &[StudyResults<'_>]) -> Option<Finding> {
 }
 
 fn answer(study: &str, all: &[QuantityWithin]) -> Option<Finding> {
-    let bound = all.first()?.bounds.first()?.bound;
-    let of = |asked: &QuantityWithin, choice: &WithinFinding| ChoiceFacts {
-        quantity: asked.quantity,
-        method: choice.method.clone(),
-        cells: choice.cells,
-        error: choice.error,
-        time_factor: choice.time_factor,
-        factor_name: choice.clock.factor_name(),
-        seconds: choice.seconds,
-    };
-    let reached = all.iter().filter_map(|asked| Some(of(asked, asked.bounds[0].choice.as_ref()?)));
-    let missed = all.iter().filter(|asked| asked.bounds[0].choice.is_none());
     let facts = Facts {
-        bound,
-        problems: all[0].problems,
-        reached: reached.collect(),
-        missed: missed
-            .map(|asked| MissedFacts {
-                quantity: asked.quantity,
-                method: asked.best.method.clone(),
-                cells: asked.best.cells,
-                error: asked.best.error,
-            })
-            .collect(),
+        bound: BOUNDS[0],
+        problems: all.first()?.problems,
+        reached: all.iter().filter_map(|asked| asked.choices[0].as_ref()).collect(),
+        missed: all.iter().filter(|asked| asked.choices[0].is_none()).map(|asked| &asked.best).collect(),
     };
     Some(WITHIN.answer([study], &facts).with(Block::Table(table(all))))
 }
@@ -110,27 +59,21 @@ fn answer(study: &str, all: &[QuantityWithin]) -> Option<Finding> {
 /// A row per quantity and bound: the cheapest choice, or where none stays within, the one with the least error. Integrators stand
 /// in the title where all are the same, and numbers of points in a cell where the method has runs with others.
 fn table(all: &[QuantityWithin]) -> Table {
-    let mut shown: Vec<(&QuantityWithin, f64, &WithinFinding, bool)> = Vec::new();
-    for asked in all {
-        for (place, bound) in asked.bounds.iter().enumerate() {
-            match &bound.choice {
-                Some(choice) => shown.push((asked, bound.bound, choice, true)),
-                // What misses the larger bound misses the smaller one.
-                None if place == 0 || asked.bounds[0].choice.is_some() => {
-                    shown.push((asked, bound.bound, &asked.best, false));
-                }
-                None => {}
+    let mut shown: Vec<(f64, &WithinFinding, bool)> = Vec::new();
+    for QuantityWithin { choices, best, .. } in all {
+        for (bound, choice) in BOUNDS.into_iter().zip(choices) {
+            // What misses the larger bound misses the smaller one.
+            if choice.is_some() || choices[0].is_some() || bound == BOUNDS[0] {
+                shown.push((bound, choice.as_ref().unwrap_or(best), choice.is_some()));
             }
         }
     }
-    let integrators = distinct(shown.iter().map(|(_, _, choice, _)| choice.integrator));
+    let integrators = distinct(shown.iter().map(|(_, choice, _)| choice.integrator));
     let shared = if let [only] = integrators[..] { Some(only) } else { None };
-    let has_points = shown.iter().any(|(_, _, choice, _)| choice.has_other_points);
+    let has_points = shown.iter().any(|(_, choice, _)| choice.has_other_points);
     let rows: Vec<Vec<Cell>> = shown
         .iter()
-        .map(|(asked, bound, choice, is_within)| {
-            row((asked, *bound), choice, *is_within, [shared.is_none(), has_points])
-        })
+        .map(|(bound, choice, is_within)| row(*bound, choice, *is_within, [shared.is_none(), has_points]))
         .collect();
     let has = |mark: &str| rows.iter().flatten().any(|cell: &Cell| cell.show().starts_with(mark));
     let notes = [
@@ -146,7 +89,7 @@ fn table(all: &[QuantityWithin]) -> Table {
     let with_points = if has_points { " | > points per cell" } else { "" };
     let header = format!(
         "error of | > bound | method{with_integrator} | > cells{with_points} | > step | > largest | > at {}",
-        all[0].best.clock.factor_name()
+        all[0].best.factor_name
     );
     let is_counted = all.iter().all(|asked| asked.best.cost > 0.0);
     let least = if is_counted { "Least counted work" } else { "Coarsest mesh" };
@@ -157,7 +100,7 @@ fn table(all: &[QuantityWithin]) -> Table {
 
 /// The cells of a choice.
 fn row(
-    (asked, bound): (&QuantityWithin, f64),
+    bound: f64,
     choice: &WithinFinding,
     is_within: bool,
     [has_integrator, has_points]: [bool; 2],
@@ -174,7 +117,7 @@ fn row(
         step => step_words(step).into(),
     };
     let mut row = vec![
-        words::quantity(asked.quantity).into(),
+        words::quantity(choice.quantity).into(),
         Cell::Text(number::bound(bound)),
         match (is_within, choice.is_confirmed) {
             (false, _) => Cell::Verdict(Mood::Fail, method),
@@ -209,30 +152,19 @@ const ASKED: [Quantity; 5] = [
 /// A quantity and what it takes to come within bounds of its error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct QuantityWithin {
-    /// Quantity.
-    pub quantity: Quantity,
-    /// Places at which it is compared.
-    pub sample: Sample,
     /// Problems that every choice solves: soils, loads and geometries.
     pub problems: usize,
-    /// The bounds, the largest first.
-    pub bounds: Vec<BoundWithin>,
+    /// The cheapest choice within each bound, where one stays within it.
+    pub choices: [Option<WithinFinding>; BOUNDS.len()],
     /// The choice with the least error.
     pub best: WithinFinding,
 }
 
-/// A bound and the cheapest choice within it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BoundWithin {
-    /// Relative error.
-    pub bound: f64,
-    /// `None` where no choice stays within it.
-    pub choice: Option<WithinFinding>,
-}
-
 /// Method, mesh and step, with the largest error over all outputs and problems.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WithinFinding {
+    /// Quantity.
+    pub quantity: Quantity,
     /// Method, or name of another solver.
     pub method: String,
     /// Integrator; empty where another program solved.
@@ -252,7 +184,7 @@ pub struct WithinFinding {
     pub error: f64,
     /// Time factor of the output that has it, and what it counts.
     pub time_factor: f64,
-    pub clock: Clock,
+    pub factor_name: &'static str,
     /// Time of that output, s.
     pub seconds: f64,
     /// Counted work of the run with the largest error, s.
@@ -333,8 +265,8 @@ fn quantity_within(
     });
     let best = best?.0.clone();
     let is_counted = choices.iter().all(|(choice, _)| choice.cost > 0.0);
-    let bounds = BOUNDS.map(|bound| BoundWithin { bound, choice: cheapest(within(bound), is_counted) });
-    Some(QuantityWithin { quantity, sample, problems, bounds: bounds.to_vec(), best })
+    let choices = BOUNDS.map(|bound| cheapest(within(bound), is_counted));
+    Some(QuantityWithin { problems, choices, best })
 }
 
 /// The cheapest choice; beside another program, whose work is not counted, the one on the coarsest mesh.
@@ -347,6 +279,7 @@ impl WithinFinding {
     fn new(record: &Record, row: &ErrorRow) -> Self {
         let case = &record.case;
         Self {
+            quantity: row.quantity,
             method: case.method.to_string(),
             integrator: if case.counts_work() { case.integrator.name() } else { "" },
             cells: case.cells,
@@ -357,7 +290,7 @@ impl WithinFinding {
             is_confirmed: false,
             error: row.value.abs(),
             time_factor: row.time_factor,
-            clock: case.scene.clock,
+            factor_name: case.scene.clock.factor_name(),
             seconds: row.time_factor * case.seconds_per_time_factor(),
             // What another program costs is not counted.
             cost: if case.counts_work() { cost_of(record) } else { 0.0 },
@@ -427,26 +360,18 @@ mod tests {
             within(&study, &records)
         };
         let cells = |found: &[QuantityWithin]| {
-            let of = |bound: &BoundWithin| bound.choice.as_ref().map(|choice| choice.cells);
-            [of(&found[0].bounds[0]), of(&found[0].bounds[1])]
+            [0, 1].map(|place| found[0].choices[place].as_ref().map(|choice| choice.cells))
         };
         let found = lay([0.05, -0.008, 0.0009], None);
-        let asked: Vec<_> = found.iter().map(|one| (one.quantity, one.sample)).collect();
-        assert_eq!(
-            asked,
-            [
-                (Quantity::Settlement, Sample::Surface),
-                (Quantity::Pressure, Sample::Points),
-                (Quantity::EffectiveStress, Sample::Points)
-            ]
-        );
+        let asked: Vec<_> = found.iter().map(|one| one.best.quantity).collect();
+        assert_eq!(asked, [Quantity::Settlement, Quantity::Pressure, Quantity::EffectiveStress]);
         assert_eq!(cells(&found), [Some(8), Some(16)]);
         assert_eq!(found[0].best.cells, 16);
         // One soil, one time: beyond the bound in one of them is beyond it.
         let of_eight = [2, 3].map(|place| cells(&lay([0.05, 0.008, 0.0009], Some((place, 0.02)))));
         assert!(of_eight.contains(&[Some(16), Some(16)]), "{of_eight:?}");
         let confirmed = |found: &[QuantityWithin]| {
-            found[0].bounds[0].choice.as_ref().map(|choice| (choice.cells, choice.is_confirmed))
+            found[0].choices[0].as_ref().map(|choice| (choice.cells, choice.is_confirmed))
         };
         assert_eq!(confirmed(&lay([0.05, 0.008, 0.009], None)), Some((8, true)));
         assert_eq!(confirmed(&lay([0.0065, 0.12, 0.009], None)), Some((16, false)), "nothing finer");
@@ -478,7 +403,7 @@ mod tests {
             record.errors.iter_mut().for_each(|row| row.value = 0.005);
             change(record);
         }
-        within(&study, &records)[0].bounds[0].choice.clone()
+        within(&study, &records)[0].choices[0].clone()
     }
 
     /// MPM within 1 % with the shorter steps alone, or with the longer ones too; VP nowhere.
@@ -497,10 +422,9 @@ mod tests {
                 record.errors.iter_mut().for_each(|row| row.value = error);
             }
             let answer = &within(&study, &records)[0];
-            let [percent, promille] = &answer.bounds[..] else { panic!("{answer:?}") };
-            let choice = percent.choice.as_ref().expect("within");
+            let choice = answer.choices[0].as_ref().expect("within");
             assert_eq!((&*choice.method, choice.is_longest_tried, answer.problems), ("MPM", is_longest, 1));
-            assert_eq!(promille.choice, None);
+            assert_eq!(answer.choices[1], None);
         }
     }
 
@@ -518,7 +442,7 @@ mod tests {
             let mut all = within(&study, &records);
             let shown = |table: Table| table.rows[0].iter().skip(2).map(Cell::show).collect::<Vec<_>>();
             assert_eq!(shown(table(&all))[..told.len()], *told, "{points}");
-            all[0].bounds[1].choice.as_mut().expect("within").integrator = "explicit";
+            all[0].choices[1].as_mut().expect("within").integrator = "explicit";
             let two = table(&all);
             assert_eq!(two.columns[3].header, "integrator");
             assert_eq!(shown(two)[..2], ["MPM", "implicit"], "{points}");

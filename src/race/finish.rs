@@ -4,7 +4,6 @@
 use crate::record::race_errors::{ARRIVED, ERRORS, LOOSEST, ROUGH, ReadOut, RunErrors, SMALLEST};
 use oedometer_convergence::reached;
 use oedometer_soil::elementary;
-use serde::{Deserialize, Serialize};
 
 /// Other tolerances that an answer is tried at.
 pub const OTHER_TOLERANCES: [f64; 3] = [SMALLEST, 2e-2, LOOSEST];
@@ -16,8 +15,7 @@ const FLAT: f64 = 0.4;
 const GROWS: f64 = 2.0;
 
 /// What an error is of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RaceQuantity {
     /// Pore pressure.
     Pressure,
@@ -79,7 +77,7 @@ impl Terms {
 }
 
 /// A method on one mesh.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Level {
     /// Cells over the height.
     pub cells: usize,
@@ -108,7 +106,7 @@ impl Level {
 }
 
 /// Where a method reaches the tolerance.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Arrival {
     /// Cells of the coarsest mesh from which on all stay within the tolerance, by half the step too where that ran.
     pub cells: usize,
@@ -150,8 +148,7 @@ pub fn arrival(levels: &[Level], terms: &Terms, most_cells: usize) -> Option<Arr
 }
 
 /// Why a method does not reach the tolerance: each measured on its finest mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reason {
     /// The meshes end while its error falls with this order.
     Budget(f64),

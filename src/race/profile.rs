@@ -1,8 +1,6 @@
 //! Performance profiles (Dolan & Moré 2002) of a table of costs, and the methods to take by them. Families of situations weigh
 //! the same, and so do the situations of a family.
 
-use serde::{Deserialize, Serialize};
-
 /// Multiple of the least cost up to which a method is nearly as good as the cheapest.
 pub const NEARLY: f64 = 2.0;
 /// Multiples of the least cost at which every profile has a value.
@@ -32,7 +30,7 @@ pub struct CostTable {
 }
 
 /// The profile of a method: a staircase.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
     /// The method.
     pub method: String,

@@ -14,10 +14,9 @@ use crate::study::check::Study;
 use oedometer_problem::method::Configuration;
 use oedometer_problem::wave_speeds;
 use oedometer_scenes::scene::Question;
-use serde::{Deserialize, Serialize};
 
 /// A situation: a study whose sweeps name the race.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Situation {
     /// Its family: the first word of its name.
     pub family: String,
@@ -42,7 +41,7 @@ pub struct Situation {
 }
 
 /// A method in a situation.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Entry {
     /// The method.
     pub contender: String,

@@ -35,12 +35,12 @@ pub fn annotations_of(checks: &[StudyCheck], file_of: impl Fn(&str) -> Option<St
         if let Some(told) = check.told_inputs() {
             add("error", 1, "inputs changed", &told);
         }
-        match &check.golden {
-            Err(_) if check.end() == CheckEnd::HeldBack => {
+        match &check.golden_problem {
+            Some(_) if check.end() == CheckEnd::HeldBack => {
                 add("warning", 1, "not run", "its programs must not be started without --allow-solvers");
             }
-            Err(error) => add("error", 1, "golden values", &error.to_string()),
-            Ok(_) => {
+            Some(error) => add("error", 1, "golden values", &error.to_string()),
+            None => {
                 for group in &check.groups {
                     let level = if group.change == Change::Stale { "warning" } else { "error" };
                     add(level, 1, &format!("golden values {}", group.change.name()), &sentence(group));
@@ -133,7 +133,7 @@ mod tests {
         }
         let missing = GoldenError::Missing("study.csv".into());
         assert_eq!(
-            levels(StudyCheck { golden: Err(missing), ..check(0) }),
+            levels(StudyCheck { golden_problem: Some(missing), ..check(0) }),
             ["error title=study%3A golden values"]
         );
         let unsound = vec![CaseNote { case: "case".to_owned(), sentence: "water is lost".to_owned() }];

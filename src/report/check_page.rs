@@ -3,18 +3,18 @@
 
 use crate::campaign::taken_over::TakenOver;
 use crate::golden::GoldenError;
-use crate::golden::compare::{CaseChange, Change, Difference};
+use crate::golden::compare::Change;
 use crate::judge::proposals::{ROOM_OF_ERROR, ROOM_OF_ORDER};
 use crate::judge::study_check::{CheckEnd, Objection, StudyCheck};
 use crate::judge::verdict::{Judgement, VerdictOutcome};
 use crate::questions::finding::{Finding, Place};
-use crate::questions::sentence;
+use crate::questions::sentence::filled;
+use crate::render::RenderError;
 use crate::render::marked_text::wrapped;
 use crate::render::page::{self, Block};
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
-use crate::render::{RenderError, number};
 use crate::report::sections;
-use crate::report::tables::golden_changes::{judgement_of, summary};
+use crate::report::tables::golden_changes::sentence;
 use oedometer_wording::count_of;
 use std::fmt::Write as _;
 
@@ -135,22 +135,19 @@ fn before(check: &StudyCheck, is_whole: bool) -> Vec<Block> {
     let diagnoses = check.diagnoses.iter().map(|told| format!("diagnosis: {told}")).collect();
     let failed = check.objections().iter().map(objection).collect();
     let inputs: Vec<String> = check.told_inputs().into_iter().collect();
-    let groups = check.groups.iter().map(|group| format!("golden values: {}", summary(group))).collect();
-    let (differences, cases) = worth_naming(check.differences(), &check.changes);
+    let groups = check.groups.iter().map(|group| format!("golden values: {}", sentence(group))).collect();
     let lists = [
         list(diagnoses, is_whole),
         list(TakenOver::sentences(&check.taken_over), is_whole),
         list(failed, is_whole),
         list(inputs, is_whole),
         list(groups, is_whole),
-        list(differences.into_iter().map(difference).collect(), false),
-        list(cases.into_iter().map(case_change).collect(), false),
     ];
     lists.into_iter().flatten().collect()
 }
 
 /// A failure in one sentence: the line that asks for it, the first series or case, how many others, and why.
-fn objection(one: &Objection<'_>) -> String {
+pub(crate) fn objection(one: &Objection<'_>) -> String {
     let line = one.line.map_or(String::new(), |line| format!("line {line}, "));
     let alike = if one.alike > 0 { format!(" and {} more", one.alike) } else { String::new() };
     format!("✗ {line}{}{alike}: {}", one.subject, one.reasons.join("; "))
@@ -160,7 +157,7 @@ fn objection(one: &Objection<'_>) -> String {
 fn proposed(check: &StudyCheck) -> Option<(String, Vec<Block>)> {
     let count = Some(check.proposals.len()).filter(|count| *count > 0)?;
     let room = serde_json::json!({ "errors": ROOM_OF_ERROR, "orders": ROOM_OF_ORDER });
-    let words = sentence::filled(include_str!("proposed.md"), &room).map(Block::Paragraph).into_iter();
+    let words = filled(include_str!("proposed.md"), &room).map(Block::Paragraph).into_iter();
     let blocks = words.chain([Block::Code(check.proposals.join("\n"))]).collect();
     Some((format!("{} that the results meet", count_of(count, "expectation", "expectations")), blocks))
 }
@@ -217,9 +214,13 @@ pub fn next_command(check: &StudyCheck, file: Option<&str>) -> Option<String> {
         (Some(group), _) if group.change == Change::Moved => explain(&group.worst.key.to_string()),
         (_, Some(note)) => explain(&note.case),
         _ if check.unmet().next().is_some() => Some(format!("oedometer report {file}")),
-        (None, _) if check.golden.is_ok() && check.other_inputs.is_empty() => None,
+        (None, _) if check.golden_problem.is_none() && check.other_inputs.is_empty() => None,
         // What cannot be read says itself what to do, and what was not run cannot be accepted.
-        _ if matches!(&check.golden, Err(error) if !error.is_missing()) || check.held_back > 0 => None,
+        _ if check.held_back > 0
+            || check.golden_problem.as_ref().is_some_and(|error| !error.is_missing()) =>
+        {
+            None
+        }
         _ => Some(format!("oedometer accept {file} --reason \"why the new values are right\"")),
     }
 }
@@ -244,7 +245,8 @@ pub fn all_judgements(checks: &[StudyCheck]) -> Table {
                 Cell::Text(reason),
             ]);
         }
-        let agrees = check.golden.is_ok() && check.differences().is_empty() && check.other_inputs.is_empty();
+        let agrees =
+            check.golden_problem.is_none() && check.differences.is_empty() && check.other_inputs.is_empty();
         let (mood, word) = match (agrees, check.end()) {
             (true, _) => (Mood::Pass, "pass"),
             (false, CheckEnd::HeldBack) => (Mood::Note, "not run"),
@@ -280,23 +282,23 @@ fn headline(check: &StudyCheck, is_short: bool) -> String {
             }
         }
     };
-    let golden = match &check.golden {
+    let golden = match &check.golden_problem {
         _ if check.end() == CheckEnd::HeldBack => {
             let cases = count_of(check.held_back, "case", "cases");
             return format!("{expectations}: {cases} not run, because their programs need --allow-solvers");
         }
-        Ok(_) if !check.compares_golden => ", no golden values, as the study says".to_owned(),
-        Ok(differences) if differences.is_empty() => format!(", {} golden values agree", check.agreeing),
-        Ok(differences) => format!(", {} golden values agree, {} do not", check.agreeing, differences.len()),
+        None if !check.compares_golden => ", no golden values, as the study says".to_owned(),
+        None if check.differences.is_empty() => format!(", {} golden values agree", check.agreeing),
+        None => format!(", {} golden values agree, {} do not", check.agreeing, check.differences.len()),
         // What fails comes first; values that are wrong are not worth accepting.
-        Err(error) if error.is_missing() && check.met() < check.judgements.len() || failed + unsound > 0 => {
+        Some(error) if error.is_missing() && check.met() < check.judgements.len() || failed + unsound > 0 => {
             String::new()
         }
-        Err(GoldenError::Missing(path)) => {
+        Some(GoldenError::Missing(path)) => {
             let advice = if is_short { "" } else { ": accept these if they look right" };
             format!(", no golden values yet ({}){advice}", path.display())
         }
-        Err(error) => format!(", {error}"),
+        Some(error) => format!(", {error}"),
     };
     let count = |count: usize, one: &str, several: &str| match count {
         0 => String::new(),
@@ -332,88 +334,12 @@ pub fn judgements_table(title: &str, judgements: &[&Judgement]) -> Table {
     Table::of(title, columns("verdict | series | class | reason"), rows)
 }
 
-/// Values and cases that are named one by one. Many values without a partner come from an input that changed, which
-/// their kind has told already: then only what moved is named.
-fn worth_naming<'a>(
-    differences: &'a [Difference],
-    cases: &'a [CaseChange],
-) -> (Vec<&'a Difference>, Vec<&'a CaseChange>) {
-    let has_partner = |one: &&Difference| one.golden.is_some() && one.found.is_some();
-    if differences.len() <= MOST + differences.iter().filter(has_partner).count() {
-        return (differences.iter().collect(), cases.iter().collect());
-    }
-    let moved = cases.iter().filter(|case| case.worse + case.better > 0).collect();
-    (differences.iter().filter(has_partner).collect(), moved)
-}
-
-fn difference(one: &Difference) -> String {
-    let change = match one.growth() {
-        Some(times) => Some(format!("{} times as large", number::rounded(times))),
-        None => one.relative_change().map(|change| format!("a relative change of {}", number::error(change))),
-    };
-    let how = match (one.golden, one.found, change) {
-        (Some(golden), Some(found), Some(change)) => format!(
-            "{} was {}, {change}, {} times its tolerance",
-            number::exact(found),
-            number::exact(golden),
-            number::rounded((found - golden).abs() / one.tolerance)
-        ),
-        (Some(golden), None, _) => format!("was {}", number::exact(golden)),
-        (_, found, _) => found.map_or(String::new(), number::exact),
-    };
-    format!("{}: {}: {how}", one.key, one.change.name())
-}
-
-fn case_change(one: &CaseChange) -> String {
-    let (mood, word) = judgement_of(one);
-    let counts = format!(
-        "{word}: {} times the golden cost, {}, {} fell, {} on one side only",
-        number::rounded(one.cost_ratio),
-        count_of(one.worse, "error rose", "errors rose"),
-        one.better,
-        one.unpaired
-    );
-    format!("{} {}: {counts}", mood.mark(), one.case)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::golden::compare::Change;
-    use crate::golden::measure::key;
     use crate::judge::study_check::CaseNote;
     use crate::render::table::columns;
     use crate::report::tests::{check, group};
-    use oedometer_convergence::ParetoChange;
-
-    #[test]
-    fn values_of_an_input_that_changed_are_told_by_their_kind_and_hide_nothing_that_moved() {
-        let difference = |golden: Option<f64>, found: Option<f64>| Difference {
-            key: key("MPM", 0.1, "pressure points terzaghi"),
-            change: if golden.is_some() && found.is_some() { Change::Moved } else { Change::Missing },
-            golden,
-            found,
-            tolerance: 1e-9,
-        };
-        let case = |worse: usize| CaseChange {
-            case: "MPM".to_owned(),
-            change: ParetoChange::NotComparable,
-            cost_ratio: 1.0,
-            worse,
-            better: 0,
-            unpaired: 1,
-        };
-        let named = |missing: usize| {
-            let mut differences = vec![difference(Some(1.0), None); missing];
-            differences.insert(missing / 2, difference(Some(1.0), Some(2.0)));
-            let cases = [case(0), case(1)];
-            let (values, cases) = worth_naming(&differences, &cases);
-            assert!(values.contains(&&differences[missing / 2]), "what moved is always named");
-            (values.len(), cases.len())
-        };
-        assert_eq!(named(MOST), (MOST + 1, 2));
-        assert_eq!(named(MOST + 1), (1, 1));
-    }
 
     #[test]
     fn a_long_list_is_cut_and_counted() {
@@ -469,37 +395,10 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_moved_is_told_by_how_many_tolerances() {
-        let moved = Difference {
-            key: key("MPM", 0.1, "pressure points terzaghi"),
-            change: Change::Moved,
-            golden: Some(0.5),
-            found: Some(0.75),
-            tolerance: 0.0625,
-        };
-        let of = |golden: Option<f64>, found: Option<f64>, change: Change| {
-            difference(&Difference { change, golden, found, ..moved.clone() })
-        };
-        let start = "MPM | pressure points terzaghi T_v=0.1: moved: ";
-        let told = of(Some(0.5), Some(0.75), Change::Moved);
-        assert_eq!(told, format!("{start}0.75 was 0.5, a relative change of 3.33e-1, 4 times its tolerance"));
-        let told = of(Some(0.5), Some(1.25), Change::Moved);
-        assert_eq!(told, format!("{start}1.25 was 0.5, 2.5 times as large, 12 times its tolerance"));
-        assert_eq!(
-            of(Some(0.5), None, Change::Missing),
-            "MPM | pressure points terzaghi T_v=0.1: missing: was 0.5"
-        );
-        assert_eq!(
-            of(None, Some(0.5), Change::Extra),
-            "MPM | pressure points terzaghi T_v=0.1: not in the golden: 0.5"
-        );
-    }
-
-    #[test]
     fn golden_values_pass_in_the_table_for_programs_only_where_nothing_is_to_be_accepted() {
         let differing = |change: Change| {
             let group = group(change);
-            StudyCheck { golden: Ok(vec![group.worst.clone()]), groups: vec![group], ..check(0) }
+            StudyCheck { differences: vec![group.worst.clone()], groups: vec![group], ..check(0) }
         };
         let accept = "oedometer accept s.toml --reason \"why the new values are right\"";
         let missing = GoldenError::Missing("study.csv".into());
@@ -513,7 +412,7 @@ mod tests {
                 Some(accept),
             ),
             (
-                StudyCheck { golden: Err(missing), ..check(0) },
+                StudyCheck { golden_problem: Some(missing), ..check(0) },
                 "fail",
                 "no golden values yet (study.csv): accept these if they look right",
                 Some(accept),

@@ -7,9 +7,6 @@ use crate::report::tables::golden_changes::sentence;
 use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::collections::BTreeMap;
 
-/// Golden values that `JUnit` names, the worst first.
-const MOST_NAMED: usize = 10;
-
 /// Checks as a `JUnit` document: one suite per study; one case per check of an expectation, named
 /// `study/method/quantity/check`, one per bad record, and one for the golden values.
 ///
@@ -48,17 +45,13 @@ pub fn junit(checks: &[StudyCheck]) -> Result<String, SerializeError> {
             let name = format!("{}/{}/run", check.study, note.case);
             suite.add_test_case(TestCase::new(name, status(false, &note.sentence)));
         }
-        let (agrees, sentence) = match &check.golden {
-            Ok(differences) => {
+        let (agrees, sentence) = match &check.golden_problem {
+            None => {
                 let inputs = check.told_inputs().into_iter();
-                let mut sentences: Vec<String> = inputs.chain(check.groups.iter().map(sentence)).collect();
-                if !differences.is_empty() {
-                    let worst = differences.iter().take(MOST_NAMED).map(|one| one.key.to_string());
-                    sentences.push(format!("The worst: {}", worst.collect::<Vec<_>>().join("; ")));
-                }
+                let sentences: Vec<String> = inputs.chain(check.groups.iter().map(sentence)).collect();
                 (sentences.is_empty(), sentences.join(". "))
             }
-            Err(error) => (false, error.to_string()),
+            Some(error) => (false, error.to_string()),
         };
         let status = match check.end() {
             CheckEnd::HeldBack => skipped("its programs must not be started without --allow-solvers"),

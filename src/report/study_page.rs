@@ -7,9 +7,8 @@ use crate::questions::setting::SETTING;
 use crate::render::RenderError;
 use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::table::Mood;
-use crate::report::check_page::judgements_table;
+use crate::report::check_page::{judgements_table, objection};
 use crate::report::sections::section;
-use oedometer_wording::count_of;
 use std::fmt::Write;
 
 /// The page of a study from its answers at [`Place::Study`].
@@ -23,7 +22,7 @@ pub fn study_page(one: &StudyResults<'_>, findings: &[Finding]) -> Result<Page, 
         findings.iter().partition(|finding| finding.question == &SETTING);
     let lead = setting.first().map(|setting| setting.sentence()).transpose()?;
     let lead = lead.map_or(String::new(), |lead| lead + "\n\n");
-    let mut sections: Vec<Section> = unmet(one).into_iter().collect();
+    let mut sections = Vec::new();
     for finding in answers {
         sections.push(section(finding, Place::Study)?);
     }
@@ -65,31 +64,21 @@ fn verdict(one: &StudyResults<'_>) -> Callout {
         0 => write!(text, "The study has no expectations."),
         _ => write!(text, "{} of {judged} expectations are met.", check.met()),
     };
-    if let Some(first) = check.unsound.first() {
-        let fail = count_of(check.unsound.len(), "check of its runs fails", "checks of its runs fail");
-        let _ = write!(text, " {fail}, first {}: {}.", first.case, first.sentence);
+    let objections = check.objections();
+    for one in objections.iter().take(MOST_REASONS) {
+        let _ = write!(text, "\n\n{}", objection(one));
     }
-    for judgement in check.unmet().take(MOST_REASONS) {
-        let _ = write!(text, "\n\n`{}`: {}", judgement.subject, judgement.verdict.reason);
-    }
-    let more = check.unmet().count().saturating_sub(MOST_REASONS);
+    let more = objections.len().saturating_sub(MOST_REASONS);
     if more > 0 {
-        let _ = write!(text, "\n\nAnd {more} more, below.");
+        let _ = write!(text, "\n\nAnd {more} more.");
     }
-    (mood_of(one), text)
+    (if objections.is_empty() { mood_of(one) } else { Mood::Fail }, text)
 }
 
 /// Whether a study is as expected; nothing is said of one that expects nothing.
 pub fn mood_of(one: &StudyResults<'_>) -> Mood {
     let passes = one.check.meets_all();
     if one.check.judgements.is_empty() && passes { Mood::Note } else { Mood::of(passes) }
-}
-
-/// The expectations that are not met.
-fn unmet(one: &StudyResults<'_>) -> Option<Section> {
-    let failing: Vec<&Judgement> = one.check.unmet().collect();
-    let table = Block::Table(judgements_table("Expectations that are not met", &failing));
-    (!failing.is_empty()).then(|| Section::new("Not as expected", "unmet", vec![table]))
 }
 
 /// Every expectation of the study behind a click.

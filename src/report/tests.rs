@@ -27,21 +27,8 @@ pub(super) fn check(failures: usize) -> StudyCheck {
     StudyCheck {
         study: "study".to_owned(),
         failed_cases: (0..failures).map(note).collect(),
-        unsound: Vec::new(),
-        other_inputs: Vec::new(),
-        input_changes: Vec::new(),
-        proposals: Vec::new(),
-        judgements: Vec::new(),
-        golden: Ok(Vec::new()),
         compares_golden: true,
-        groups: Vec::new(),
-        changes: Vec::new(),
-        agreeing: 0,
-        expected: 0,
-        unjudged: 0,
-        held_back: 0,
-        taken_over: Vec::new(),
         warnings: vec!["slow".to_owned()],
-        diagnoses: Vec::new(),
+        ..StudyCheck::default()
     }
 }

@@ -14,7 +14,7 @@ use crate::measure::fields::{
 };
 use crate::record::ErrorRow;
 use crate::score::completeness::{Finding, Lack};
-use crate::score::score_series::{SeriesRow, time_factors};
+use crate::score::score_series::{ScoredSeries, time_factors};
 use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind, TextbookProblem};
 use oedometer_wording::rounded;
 use std::borrow::Cow;
@@ -66,7 +66,7 @@ pub struct Score {
     pub unresolved: Vec<Unresolved>,
     /// Orders and classes over all meshes of which this result is one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub series: Vec<SeriesRow>,
+    pub series: Vec<ScoredSeries>,
     /// In which direction fields are off the first reference.
     #[serde(skip)]
     pub leanings: Vec<Leaning>,

@@ -214,15 +214,8 @@ impl<'a> Results<'a> {
         Some((scored.run.cells?, series.iter().find(is_own)?))
     }
 
-    /// Adds the series to every score, for programs that read them.
-    pub fn keep_series(&mut self, series: &[ScoredSeries], cells: &[usize]) {
-        for scored in &mut self.all {
-            scored.score.series = series.iter().map(|series| series.row(cells)).collect();
-        }
-    }
-
-    /// The series over meshes with their numbers of cells, if these are known.
-    pub fn series(&self) -> Option<(Vec<ScoredSeries>, Vec<usize>)> {
+    /// The series over meshes, if their numbers of cells are known; every score keeps them, for programs that read it.
+    pub fn join_meshes(&mut self) -> Option<Vec<ScoredSeries>> {
         let levels: Vec<(usize, &Score)> = self
             .order
             .iter()
@@ -232,8 +225,9 @@ impl<'a> Results<'a> {
         if (levels.len() < 2 || !is_rising) && self.comparison.are_cells_found {
             return None;
         }
-        let cells = levels.iter().map(|(cells, _)| *cells).collect();
-        Some((series_of(&levels, &self.times, self.comparison.case.column.height), cells))
+        let series = series_of(&levels, &self.times, self.comparison.case.column.height);
+        self.all.iter_mut().for_each(|scored| scored.score.series.clone_from(&series));
+        Some(series)
     }
 }
 

@@ -9,16 +9,19 @@ use crate::record::ErrorRow;
 use crate::score::{Leaning, Score};
 use oedometer_convergence::{Classification, Context, ErrorSeries, SeriesLevel, classify};
 use oedometer_exact::ColumnParameters;
+use serde::ser::{Serialize, SerializeStruct, Serializer};
 use std::collections::HashMap;
 
 /// Cosine between error and field from which on the error has a sign: half of its square lies along the field.
 const CLEAR: f64 = 0.7;
 
 /// A series of one error over results on finer and finer meshes, with its class.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ScoredSeries {
     /// The group of its times.
     pub group: usize,
+    /// Cells of its meshes, from coarse to fine.
+    pub cells: Vec<usize>,
     /// What the errors are of; its time is that of the group, its value that on the coarsest mesh.
     pub measure: ErrorRow,
     /// Largest difference between the times of the meshes and that of the group, relative.
@@ -29,48 +32,24 @@ pub struct ScoredSeries {
     pub classification: Classification,
 }
 
-impl ScoredSeries {
-    /// The series with the cells of its meshes.
-    pub fn row(&self, cells: &[usize]) -> SeriesRow {
-        let ErrorRow { time_factor, quantity, sample, norm, ref reference, .. } = self.measure;
-        SeriesRow {
-            time_factor,
-            quantity,
-            sample,
-            norm,
-            reference: reference.clone(),
-            cells: cells.to_vec(),
-            errors: self.series.levels().iter().map(|level| level.error).collect(),
-            order: self.classification.order,
-            class: self.classification.class.name(),
-            reason: self.classification.reason.clone(),
-        }
-    }
-}
-
 /// A series in machine-readable output.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct SeriesRow {
-    /// Time factor of the group.
-    pub time_factor: f64,
-    /// What.
-    pub quantity: Quantity,
-    /// Where.
-    pub sample: Sample,
-    /// In which norm.
-    pub norm: Norm,
-    /// Against which reference.
-    pub reference: String,
-    /// Cells over the height, coarsest first.
-    pub cells: Vec<usize>,
-    /// Errors on these meshes; `None` where a result lacks it.
-    pub errors: Vec<Option<f64>>,
-    /// Order, where the class allows one.
-    pub order: Option<f64>,
-    /// Class.
-    pub class: &'static str,
-    /// Why.
-    pub reason: String,
+impl Serialize for ScoredSeries {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let (of, class) = (&self.measure, &self.classification);
+        let errors: Vec<Option<f64>> = self.series.levels().iter().map(|level| level.error).collect();
+        let mut out = serializer.serialize_struct("ScoredSeries", 10)?;
+        out.serialize_field("time_factor", &of.time_factor)?;
+        out.serialize_field("quantity", &of.quantity)?;
+        out.serialize_field("sample", &of.sample)?;
+        out.serialize_field("norm", &of.norm)?;
+        out.serialize_field("reference", &of.reference)?;
+        out.serialize_field("cells", &self.cells)?;
+        out.serialize_field("errors", &errors)?;
+        out.serialize_field("order", &class.order)?;
+        out.serialize_field("class", class.class.name())?;
+        out.serialize_field("reason", &class.reason)?;
+        out.end()
+    }
 }
 
 /// What a series is of: the group of its times, quantity, sample, norm and reference.
@@ -128,6 +107,7 @@ fn one_series(
         rows.iter().flatten().map(|row| (row.time_factor - time_factor).abs() / time_factor.abs());
     Some(ScoredSeries {
         group,
+        cells: levels.iter().map(|(cells, _)| *cells).collect(),
         measure: ErrorRow { time_factor, ..(*first).clone() },
         time_difference: differences.filter(|difference| difference.is_finite()).fold(0.0, f64::max),
         classification: classify(&series, &context),

@@ -386,9 +386,6 @@ fn figure_told(name: &str, chart: &Chart) -> String {
     for rule in &chart.rules {
         let _ = write!(text, "\n  at {}: {}", rounded(rule.at), rule.label);
     }
-    for triangle in &chart.triangles {
-        let _ = write!(text, "\n  slope {} beside {}", triangle.slope, triangle.beside);
-    }
     for row in chart.rows.iter().flat_map(|rows| &rows.rows) {
         let _ = write!(text, "\n  {}: {}, {}", row.name, row.without.join("|"), row.words.join("|"));
     }

@@ -2,6 +2,7 @@
 
 use crate::case::planned::Tier;
 use crate::cli::exit::{Ended, Exit};
+use crate::cli::help::EXPERT;
 use crate::cli::output::{TableFormat, is_on, print_tables, say, terminal_width};
 use crate::cli::place::{StudyArguments, golden_folder};
 use crate::cli::running::jobs_of;
@@ -29,7 +30,7 @@ pub struct Arguments {
     #[command(flatten)]
     studies: StudyArguments,
     /// Accept the values even if expectations or cases of the study fail
-    #[arg(long)]
+    #[arg(long, help_heading = EXPERT)]
     despite_failing: bool,
     /// Why the new values are right
     #[arg(long, value_name = "TEXT")]

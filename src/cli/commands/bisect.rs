@@ -156,9 +156,6 @@ fn report(trial: &Trial<'_>, right: &StudyState, hash: &str, skipped: &[String])
         let differences = compare(&right.golden, &values.golden.values);
         for group in groups_of(&differences, right.golden.values.keys()) {
             writeln!(text, "  {}", sentence(&group))?;
-            if let (Some(before), Some(after)) = (group.worst.golden, group.worst.found) {
-                writeln!(text, "    {before:e} -> {after:e}")?;
-            }
         }
         for sentence in trial.diagnoses() {
             writeln!(text, "  diagnosis: {sentence}")?;

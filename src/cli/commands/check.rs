@@ -3,6 +3,7 @@
 use crate::campaign::runner::{RunReport, Tally};
 use crate::case::planned::Tier;
 use crate::cli::exit::{Ended, Exit, sentence};
+use crate::cli::help::EXPERT;
 use crate::cli::output::{
     TableFormat, append, is_on, json_of, path_in, print_coloured, print_data, say, terminal_width,
     write_document,
@@ -52,10 +53,10 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
     /// Append a summary in Markdown [default: $`GITHUB_STEP_SUMMARY`, if set]
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = EXPERT)]
     summary: Option<PathBuf>,
     /// Write GitHub annotations of study lines to standard error; default in GitHub workflows
-    #[arg(long)]
+    #[arg(long, help_heading = EXPERT)]
     annotate: bool,
     /// Print only the verdict on each study
     #[arg(short, long, conflicts_with = "format")]

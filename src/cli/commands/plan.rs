@@ -6,6 +6,7 @@ use crate::case::Case;
 use crate::case::planned::Tier;
 use crate::case::work_estimate::estimated_updates;
 use crate::cli::exit::{Ended, Exit};
+use crate::cli::help::EXPERT;
 use crate::cli::job_list::{JobList, missing_of};
 use crate::cli::output::{TableFormat, json_of, of_device, print_data, print_tables, print_with, say};
 use crate::cli::place::DEFAULT_RESULTS;
@@ -37,10 +38,10 @@ pub struct Arguments {
     missing: Option<PathBuf>,
     /// Print a job list instead: divide the cases into this many shards, and print a command for each shard with missing
     /// cases
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000), help_heading = EXPERT)]
     tasks: Option<u64>,
     /// Divide the cases by estimated time, the longest first, instead of by hash
-    #[arg(long, requires = "tasks")]
+    #[arg(long, requires = "tasks", help_heading = EXPERT)]
     balance: bool,
     /// Add `--keep-unproven` to the commands: reuse results of attached solvers that cannot be shown to come from the
     /// present program
@@ -54,7 +55,7 @@ pub struct Arguments {
     #[arg(long, value_enum)]
     format: Option<PlanFormat>,
     /// Write the case file of each case into this folder, as HASH/case.json
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", help_heading = EXPERT)]
     case_files: Option<PathBuf>,
 }
 

@@ -5,6 +5,7 @@ use crate::campaign::shares::{Parting, Shard};
 use crate::campaign::stop;
 use crate::case::planned::Tier;
 use crate::cli::exit::{Ended, Exit};
+use crate::cli::help::EXPERT;
 use crate::cli::output::say;
 use crate::cli::place::{DEFAULT_RESULTS, StudyArguments};
 use crate::cli::running::{jobs_of, run_and_store};
@@ -32,29 +33,29 @@ pub struct Arguments {
     #[arg(long, alias = "test-level", value_enum, default_value_t = Tier::Full)]
     tier: Tier,
     /// Run only this shard of the cases, like 2/3
-    #[arg(long, value_name = "i/n")]
+    #[arg(long, value_name = "i/n", help_heading = EXPERT)]
     shard: Option<String>,
     /// Divide the cases by estimated time, the longest first, instead of by hash
-    #[arg(long, requires = "shard")]
+    #[arg(long, requires = "shard", help_heading = EXPERT)]
     balance: bool,
     /// Run only the case whose hash begins with these digits
     #[arg(long, value_name = "HASH", conflicts_with_all = ["tier", "shard"])]
     case: Option<String>,
     /// Reuse finished records of the same version and sources, from any build
-    #[arg(long)]
+    #[arg(long, help_heading = EXPERT)]
     resume: bool,
     /// With `--resume`: also reuse results of attached solvers that cannot be shown to come from the present program
     #[arg(long, requires = "resume")]
     keep_unproven: bool,
     /// Write compressed tables, STUDY.csv.gz (pandas reads them)
-    #[arg(long)]
+    #[arg(long, help_heading = EXPERT)]
     compress: bool,
     /// Run the cases by a scheduler instead of on this machine
-    #[arg(long, value_enum, conflicts_with_all = ["case", "shard", "jobs"])]
+    #[arg(long, value_enum, conflicts_with_all = ["case", "shard", "jobs"], help_heading = EXPERT)]
     engine: Option<Engine>,
     #[command(flatten)]
     trust: TrustArguments,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = EXPERT)]
     cluster: slurm::ClusterArguments,
 }
 

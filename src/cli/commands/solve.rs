@@ -7,6 +7,7 @@ use crate::case::outcome::{Course, Solver};
 use crate::case::planned::{PlannedCase, Tier};
 use crate::case::{Case, Quantity};
 use crate::cli::exit::{Ended, Exit};
+use crate::cli::help::EXPERT;
 use crate::cli::output::{SolveFormat, csv_of, json_of, print_data, say, table_width, terminal_width};
 use crate::cli::progress::{RunningCase, note_on_solve};
 use crate::cli::study_files::tell_warnings;
@@ -55,7 +56,7 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     fields: Option<PathBuf>,
     /// Use the point-wise step even where the assembled one gives the same result
-    #[arg(long)]
+    #[arg(long, help_heading = EXPERT)]
     point_wise: bool,
     /// Output format
     #[arg(long, value_enum, default_value_t = SolveFormat::Table)]

@@ -179,11 +179,6 @@ impl PlacedAxis {
         Some(self.from + self.ends.share(value) * (self.to - self.from))
     }
 
-    /// Pixels per decade of a logarithmic axis, negative against the direction of pixels.
-    pub fn decade(&self) -> f64 {
-        (self.to - self.from) / elementary::log10(self.ends.high / self.ends.low)
-    }
-
     /// Width of the widest label, px.
     pub fn label_width(&self) -> f64 {
         let labels = self.ticks.iter().filter_map(|tick| tick.label.as_deref());
@@ -363,9 +358,6 @@ mod tests {
         let seen = [-0.0011, -0.0009, 1.0009, 1.0011].map(|one| unit.visible(one).is_ok());
         assert_eq!(seen, [false, true, true, false]);
         assert_eq!([-99.0, -5.0, 99.0].map(|one| unit.near(one)), [-20.0, -5.0, 21.0]);
-        let drawn = placed(Scale::Log10, 1.0, 100.0, 300.0, false);
-        let [one, ten] = [1.0, 10.0].map(|value| drawn.px(value).expect("on the axis"));
-        assert!((drawn.decade() - (ten - one)).abs() < 1e-9, "{} for {}", drawn.decade(), ten - one);
         let powers = [1e-30, 1e-5, 1e30].map(|one| decade.near(one).log10().round());
         assert_eq!(powers, [-20.0, -5.0, 21.0]);
         // Room of 4 % of two decades; of a sixth of a decade where the data take less than a third.

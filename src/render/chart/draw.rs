@@ -2,15 +2,14 @@
 
 use crate::render::RenderError;
 use crate::render::chart::axis::{Ends, PlacedAxis, Reason, TICK_FONT};
-use crate::render::chart::ends::{end_names, end_names_width};
 use crate::render::chart::looks::{Legend, Look, draw_marker, looks};
 use crate::render::chart::multiples::{SIDE_BY_SIDE, side_by_side};
 use crate::render::chart::rows;
+use crate::render::chart::rules::rules;
 use crate::render::chart::svg::{
     Font, NARROW, Px, document, group, layer, line, scripted, stroke, units, write,
 };
-use crate::render::chart::words::{Frame, Space, rules, triangles};
-use crate::render::chart::{Chart, Naming, Series, Style};
+use crate::render::chart::{Chart, Series, Style};
 use crate::render::palette::TWIN;
 use crate::render::palette::{FINE_GRID, FRAME, GRID, QUIET, SCREEN, TEXT};
 use crate::render::script::{width, wrap};
@@ -33,6 +32,26 @@ const LINE: f64 = 1.3;
 const BELOW: f64 = 42.0;
 /// Tick, gap to its label, and room for the words of an upright axis, px.
 const BESIDE: f64 = 10.0 + 1.4 * LABEL.size;
+
+/// A rectangle in pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Frame {
+    pub left: f64,
+    pub top: f64,
+    pub right: f64,
+    pub bottom: f64,
+}
+
+impl Frame {
+    fn holds(&self, (x, y): Px) -> bool {
+        x >= self.left && x <= self.right && y >= self.top && y <= self.bottom
+    }
+
+    /// The frame, `by` wider on every side.
+    fn grown(&self, by: f64) -> Self {
+        Self { left: self.left - by, top: self.top - by, right: self.right + by, bottom: self.bottom + by }
+    }
+}
 
 /// A figure laid out, in pixels.
 pub(super) struct Layout {
@@ -66,7 +85,7 @@ impl Layout {
 
         let y_axis = PlacedAxis::new(&chart.y, y_ends, (top + tall, top), true);
         let left = PAD + y_axis.label_width() + BESIDE;
-        let room = (wide - left - PAD - 14.0 - end_names_width(chart)).max(60.0);
+        let room = (wide - left - PAD - 14.0).max(60.0);
         let plot = Frame { left, top, right: left + room, bottom: top + tall };
         let x = PlacedAxis::new(&chart.x, x_ends, (plot.left, plot.right), false);
 
@@ -161,7 +180,6 @@ impl Chart {
                 narrow.size.plot_height = self.size.plot_height.min(NARROW_HEIGHT);
                 narrow.size.width = NARROW;
                 // Names beside lines have no room.
-                narrow.naming = Naming::Legend;
                 narrow.document_of(|| narrow.as_panels((1, NARROW)))
             }
         };
@@ -193,12 +211,8 @@ impl Chart {
     fn elements(&self) -> Result<(Px, String), String> {
         let chart = &self.with_twins_named();
         let layout = Layout::of(chart);
-        let mut space = Space::within(layout.plot.grown(-2.0));
-        let back = chart.axes(&layout)? + &chart.lines(&layout, &mut space)?;
-        let markers = chart.markers(&layout, &mut space)?;
-        let words = triangles(&mut space, chart, &layout)?
-            + &rules(&mut space, chart, &layout)?
-            + &end_names(chart, &layout)?;
+        let back = chart.axes(&layout)? + &chart.lines(&layout)?;
+        let (markers, words) = (chart.markers(&layout)?, rules(chart, &layout)?);
         let below = (PAD, layout.plot.bottom + BELOW + 8.0);
         let around = layout.legend.elements(layout.size, below)? + &Self::texts(&layout)?;
         Ok((layout.size, [back, markers, words, around].concat()))
@@ -258,18 +272,13 @@ impl Chart {
     }
 
     /// The lines of all series, theory last, cut at the frame.
-    fn lines(&self, layout: &Layout, space: &mut Space) -> Result<String, String> {
+    fn lines(&self, layout: &Layout) -> Result<String, String> {
         let mut out = String::new();
         for is_theory in [false, true] {
             let lines = self.series.iter().zip(&layout.looks).zip(&layout.points);
             for ((series, look), places) in
                 lines.filter(|((_, look), _)| look.has_line && look.is_theory == is_theory)
             {
-                for pair in places.windows(2) {
-                    if let (Some(a), Some(b)) = (pair[0], pair[1]) {
-                        space.add_line(a, b);
-                    }
-                }
                 let drawn = layer(layout.size, |area| {
                     // Broken at values that cannot be drawn.
                     for piece in places.split(Option::is_none).filter(|piece| piece.len() > 1) {
@@ -290,7 +299,7 @@ impl Chart {
 
     /// The markers of all series. Those of later series are smaller, so that points that coincide are seen to be
     /// several, above all where no line shows it.
-    fn markers(&self, layout: &Layout, space: &mut Space) -> Result<String, String> {
+    fn markers(&self, layout: &Layout) -> Result<String, String> {
         let inside = layout.plot.grown(0.5);
         let mut kinds: Vec<Look> = Vec::new();
         let mut out = String::new();
@@ -305,7 +314,6 @@ impl Chart {
             let drawn = layer(layout.size, |area| {
                 for at in places.iter().flatten().copied().filter(|at| inside.holds(*at)) {
                     draw_marker(area, at, slot, radius, look.colour)?;
-                    space.add_marker(at);
                 }
                 Ok(())
             })?;

@@ -4,7 +4,7 @@ use crate::case::grouping::distinct;
 use crate::render::chart::svg::{
     Area, Drawn, Font, Px, group, layer, line, polygon, spot, stroke, units, write,
 };
-use crate::render::chart::{Chart, Naming, Series, Style};
+use crate::render::chart::{Chart, Series, Style};
 use crate::render::palette::colour_and_shape;
 use crate::render::palette::slots;
 use crate::render::palette::{FRAME, SCREEN, SERIES, TEXT, THEORY};
@@ -146,7 +146,7 @@ impl Legend {
     /// The legend of the series that have something drawn, within so many pixels.
     pub fn of(chart: &Chart, looks: &[Look], is_drawn: impl Fn(usize) -> bool, room: f64) -> Self {
         let mut seen: Vec<(Look, &str)> = Vec::new();
-        let in_legend = |series: &Series| chart.naming == Naming::Legend && series.style != Style::Context;
+        let in_legend = |series: &Series| series.style != Style::Context;
         for (place, (series, look)) in
             chart.series.iter().zip(looks).enumerate().filter(|(_, (one, _))| in_legend(one))
         {

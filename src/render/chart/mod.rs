@@ -5,12 +5,11 @@
 
 mod axis;
 mod draw;
-mod ends;
 mod looks;
 mod multiples;
 mod rows;
+mod rules;
 mod svg;
-mod words;
 
 pub use crate::render::chart::rows::{ChartRow, ChartRows};
 
@@ -34,12 +33,8 @@ pub struct Chart {
     pub series: Vec<Series>,
     /// Horizontal lines at single values.
     pub rules: Vec<Rule>,
-    /// Triangles that show the slope of an order.
-    pub triangles: Vec<SlopeTriangle>,
     /// Rows with words, of a dot plot.
     pub rows: Option<ChartRows>,
-    /// Where the names of series stand.
-    pub naming: Naming,
     /// Width of the figure and height of the plot.
     pub size: Size,
 }
@@ -54,16 +49,6 @@ fn differ(values: impl Iterator<Item = f64> + Clone, share: f64) -> bool {
     most - least > share * least.abs().max(most.abs())
 }
 
-/// Where the names of series stand.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Naming {
-    /// In a legend below the plot.
-    #[default]
-    Legend,
-    /// Right of the plot, at the ends of their lines.
-    Ends,
-}
-
 impl Chart {
     /// An empty figure of the default size.
     pub fn new(title: impl Into<String>, x: ChartAxis, y: ChartAxis) -> Self {
@@ -74,9 +59,7 @@ impl Chart {
             y,
             series: Vec::new(),
             rules: Vec::new(),
-            triangles: Vec::new(),
             rows: None,
-            naming: Naming::default(),
             size: Size::default(),
         }
     }
@@ -264,13 +247,4 @@ pub struct Rule {
     pub at: f64,
     /// Words at the line.
     pub label: String,
-}
-
-/// A triangle of a given slope on doubly logarithmic axes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SlopeTriangle {
-    /// The slope; negative where the error falls to the right.
-    pub slope: f64,
-    /// Name of the series beside which it stands.
-    pub beside: String,
 }

@@ -54,7 +54,6 @@ impl Chart {
         };
         let series: Vec<Series> = context.map(grey).chain(coloured.map(placed)).collect();
         let mut panel = self.clone();
-        panel.triangles.retain(|triangle| is_shown(&triangle.beside));
         panel.series = series;
         // The statement stands once, above the first; the others say whose lines they colour.
         if number > 0 {
@@ -120,7 +119,7 @@ pub(super) fn side_by_side(panels: &[(Px, String)], (columns, wide): (usize, f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::chart::{ChartAxis, SlopeTriangle};
+    use crate::render::chart::ChartAxis;
 
     fn chart(series: usize) -> Chart {
         let mut chart = Chart::new("E", ChartAxis::log10("h"), ChartAxis::log10("e"))
@@ -141,8 +140,7 @@ mod tests {
 
     #[test]
     fn every_series_is_coloured_in_one_panel_and_grey_in_the_others_on_one_scale() {
-        let mut whole = chart(15);
-        whole.triangles = vec![SlopeTriangle { slope: 1.0, beside: "method 14".to_owned() }];
+        let whole = chart(15);
         let panels = whole.panels();
         assert_eq!(panels.len(), 3);
         for panel in &panels {
@@ -157,7 +155,6 @@ mod tests {
             panels.iter().flat_map(|panel| &panel.series).filter(|one| is_counted(one)).collect();
         names.dedup_by_key(|series| &series.name);
         assert_eq!(names.len(), 15);
-        assert_eq!(panels.iter().map(|panel| panel.triangles.len()).collect::<Vec<_>>(), [0, 0, 1]);
         let part = |height: f64, text: &str| ((450.0, height), text.to_owned());
         let (size, drawn) =
             side_by_side(&[part(300.0, "a"), part(320.0, "b"), part(310.0, "c")], SIDE_BY_SIDE);

@@ -3,7 +3,7 @@
 
 mod gallery;
 
-use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle, Style};
+use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, Style};
 use crate::render::palette::slots;
 use gallery::{convergence, gallery, nothing};
 
@@ -95,8 +95,6 @@ fn hostile_descriptions_still_make_a_figure() {
     chart.title = "a < b & \"c\" \u{0} \u{e000}".into();
     chart.size = Size { width: f64::NAN, plot_height: -5.0 };
     chart.x = chart.x.with_ticks(vec![f64::NAN, -1.0, 0.05]);
-    chart.triangles.push(SlopeTriangle { slope: f64::NAN, beside: "MPM".into() });
-    chart.triangles.push(SlopeTriangle { slope: 0.0, beside: "nobody".into() });
     chart.rules.push(Rule { at: -1.0, label: "x".into() });
     chart.rules.push(Rule { at: f64::NAN, label: "?".into() });
     chart.series.push(Series::new("one", vec![(0.1, 0.1)]));

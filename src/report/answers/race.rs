@@ -9,12 +9,12 @@ use crate::questions::choice::{
 use crate::questions::finding::Finding;
 use crate::questions::sentence;
 use crate::questions::words::capitalised;
-use crate::race::RaceFindings;
 use crate::race::finish::{Budget, RaceQuantity, Reason, Terms};
 use crate::race::group::{Group, races};
 use crate::race::situation::{Entry, Situation};
+use crate::race::{LADDER, RaceFindings};
 use crate::record::race_errors::{ARRIVED, ReadOut};
-use crate::render::chart::{Chart, ChartAxis, Naming, Series, Size, Style};
+use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::page::{Block, Figure, Page, Section};
 use crate::render::palette::slots;
 use crate::render::table::{Cell, Mood, Shade, Table, TableColumn, columns};
@@ -137,11 +137,16 @@ fn answer_table(findings: &RaceFindings) -> Table {
 
 /// How many more problems each operator makes a method reach.
 fn operator_table(findings: &RaceFindings) -> Table {
-    let rows = findings.operators.iter().map(|one| {
-        let mut row = vec![Cell::Text(one.operator.clone()), Cell::Code(one.methods[1].clone())];
-        row.extend(one.arrivals.iter().map(|counts| match counts {
-            Some([without, with]) => Cell::Number(*with as f64 - *without as f64),
-            None => Cell::missing("not among the methods"),
+    let rows = LADDER.windows(2).map(|pair| {
+        let [(without, _), (with, operator)] = [pair[0], pair[1]];
+        let mut row = vec![operator.into(), Cell::Code(with.to_owned())];
+        row.extend(races().map(|(group, read_out)| {
+            let [without, with] = [without, with].map(|method| findings.reached(method, group, read_out));
+            Cell::of(
+                with.zip(without).map(|(with, without)| with as f64 - without as f64),
+                Cell::Number,
+                "not among the methods",
+            )
         }));
         row
     });
@@ -181,7 +186,6 @@ fn profile_figure(findings: &RaceFindings, group: Group, read_out: ReadOut) -> F
         ChartAxis::log10("work to 1 %, over that of the cheapest method").between(1.0, LARGEST_TAU),
         ChartAxis::linear("share of problems, each family weighs the same").between(0.0, 1.0),
     );
-    chart.naming = Naming::Ends;
     chart.size = Size { width: 620.0, plot_height: 440.0 };
     let staircase = |steps: &[(f64, f64)]| {
         let mut points: Vec<(f64, f64)> = Vec::new();

@@ -1,9 +1,8 @@
 //! Golden values that changed, in words and as tables, the worst first.
 
-use crate::golden::compare::{CaseChange, Change, Difference, DifferenceGroup};
+use crate::golden::compare::{Change, Difference, DifferenceGroup};
 use crate::render::number;
-use crate::render::table::{Cell, Mood, Table, columns};
-use oedometer_convergence::ParetoChange;
+use crate::render::table::{Cell, Table, columns};
 use oedometer_wording::count_of;
 use std::fmt::Write;
 
@@ -44,21 +43,13 @@ pub(crate) fn summary(group: &DifferenceGroup) -> String {
     sentence
 }
 
-/// The summary with the name of the worst value.
+/// The summary with the worst value, by its name, and how it changed.
 pub fn sentence(group: &DifferenceGroup) -> String {
-    format!("{}: {}", summary(group), group.worst.key)
-}
-
-/// How accuracy and cost of a case changed together.
-pub(crate) fn judgement_of(one: &CaseChange) -> (Mood, &'static str) {
-    match one.change {
-        ParetoChange::Same => (Mood::Pass, "same"),
-        ParetoChange::Better => (Mood::Note, "better"),
-        ParetoChange::Traded if one.is_stale() => (Mood::Note, "cost traded for accuracy"),
-        ParetoChange::Traded => (Mood::Fail, "mixed"),
-        ParetoChange::Dominated => (Mood::Fail, "worse than its golden values"),
-        ParetoChange::NotComparable => (Mood::Fail, "values on one side only"),
-    }
+    let change = match (group.worst.golden, group.worst.found) {
+        (Some(golden), Some(found)) => format!(", {}", number::told_apart([golden, found]).join(" → ")),
+        _ => String::new(),
+    };
+    format!("{}: {}{change}", summary(group), group.worst.key)
 }
 
 /// Values that differ from their golden ones.
@@ -125,7 +116,7 @@ mod tests {
             let grown = group(change, 2, Some(-2.0), Some(7.0));
             let told = format!("2 values {several}, in 2 cases{shared}; the largest is 3.5 times as large");
             assert_eq!(summary(&grown), told);
-            assert_eq!(sentence(&grown), format!("{told}: n | steps"));
+            assert_eq!(sentence(&grown), format!("{told}: n | steps, -2.00 → 7.00"));
             let moved = format!(
                 "3 values {several}, in 2 cases{shared}; largest relative change 2.50e-1; most of it is below"
             );
@@ -134,29 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn a_case_is_judged_by_accuracy_and_cost_together_and_forty_values_are_enough() {
-        use ParetoChange::{Better, Dominated, NotComparable, Same, Traded};
-        let case = |change: ParetoChange, cost_ratio: f64, worse: usize, better: usize| CaseChange {
-            case: "c".to_owned(),
-            change,
-            cost_ratio,
-            worse,
-            better,
-            unpaired: 7,
-        };
-        let all = [
-            (case(Same, 1.0, 0, 0), "✓ same"),
-            (case(Better, 0.5, 0, 3), "• better"),
-            (case(Traded, 2.0, 0, 3), "• cost traded for accuracy"),
-            (case(Traded, 0.5, 4, 0), "• cost traded for accuracy"),
-            (case(Traded, 1.0, 4, 3), "✗ mixed"),
-            (case(Dominated, 3.0, 5, 0), "✗ worse than its golden values"),
-            (case(NotComparable, 1.0, 0, 0), "✗ values on one side only"),
-        ];
-        for (change, words) in &all {
-            let (mood, word) = judgement_of(change);
-            assert_eq!(Cell::Verdict(mood, word.to_owned()).show(), *words);
-        }
+    fn forty_values_are_enough() {
         let moved = |values: usize| {
             let one = |number: usize| Difference {
                 key: key(&number.to_string(), None, "steps"),

@@ -90,11 +90,12 @@ fn place_cells(worst: Option<&WorstPlace>, is_plane: bool) -> Vec<Cell> {
 }
 
 /// One row per series over meshes, with its errors, order and class.
-pub fn series_table(series: &[ScoredSeries], cells: &[usize]) -> Table {
+pub fn series_table(series: &[ScoredSeries]) -> Table {
     let references = distinct(series.iter().map(|one| one.measure.reference.as_str()));
     let shared = if let [only] = references[..] { Some(only) } else { None };
     let mut columns = columns("> T_v | quantity");
     columns.extend(shared.is_none().then(|| TableColumn::text("reference")));
+    let cells = series.first().map_or(&[][..], |one| &one.cells);
     columns.extend(cells.iter().map(|cells| TableColumn::number(format!("{cells} cells"))));
     columns.extend(table::columns("> order | class"));
     let rows = series.iter().map(|one| {
@@ -175,6 +176,7 @@ mod tests {
         let told = |differences: [f64; 3]| {
             let series = differences.map(|time_difference| ScoredSeries {
                 group: 0,
+                cells: vec![2, 4],
                 measure: ErrorRow {
                     time_factor: 0.2,
                     quantity: Quantity::Pressure,
@@ -188,7 +190,7 @@ mod tests {
                 series: ErrorSeries::from_pairs(&[(0.5, 0.1), (0.25, 0.025)]),
                 classification: Classification::new(Class::NotEvaluable, "two meshes"),
             });
-            series_table(&series, &[2, 4]).notes
+            series_table(&series).notes
         };
         let differ = "times differ between the meshes by up to 2.0e-3 of the T_v shown";
         for place in 0..3 {

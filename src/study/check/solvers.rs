@@ -409,7 +409,7 @@ fn digest_of_result(table: &ResultTable, files: &[String], cells: &[usize], fold
 }
 
 /// Digest of the content of a file; of one that cannot be read, a word.
-pub(crate) fn digest_of_file(path: &Path) -> String {
+fn digest_of_file(path: &Path) -> String {
     let mut hasher = blake3::Hasher::new();
     let read = input_file::open(path).and_then(|file| hasher.update_reader(file).map(|_| ()));
     read.map_or_else(|_| "unreadable".to_owned(), |()| hasher.finalize().to_hex().to_string())

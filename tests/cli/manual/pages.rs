@@ -134,11 +134,7 @@ fn shell(folder: &Path, home: &Path, line: &str) -> Ended {
         command.env_remove(name);
     }
     let path = std::env::var("PATH").unwrap_or_default();
-    command
-        .env("PATH", format!("{program}:{path}"))
-        .env("HOME", home)
-        .env("XDG_STATE_HOME", home)
-        .env_remove(ALLOWED.0);
+    command.env("PATH", format!("{program}:{path}")).env("HOME", home).env_remove(ALLOWED.0);
     for name in ["AUTHOR", "COMMITTER"] {
         command
             .env(format!("GIT_{name}_NAME"), "A reader")

@@ -258,14 +258,12 @@ fn write_study_alone(
     making: Making,
     start: Instant,
 ) -> anyhow::Result<()> {
-    let findings = answers(std::slice::from_ref(one), Place::Study)?;
-    let mut page = study_page(one, &findings)?;
-    page.sections.extend(changes.map(changes_section).transpose()?);
-    let making = Making { seconds: start.elapsed().as_secs_f64(), ..making };
-    page.footer = format!("**How was it made?** {}", making.words(std::slice::from_ref(one)));
-    write_page(&out.join("findings.json"), &json_of(&findings_json(&findings))?)?;
-    write_study_files(out, one)?;
-    write_both(out, "index", "README", &page)
+    write_study(out, one, ["index", "README", "findings"], |mut page| {
+        page.sections.extend(changes.map(changes_section).transpose()?);
+        let making = Making { seconds: start.elapsed().as_secs_f64(), ..making };
+        page.footer = format!("**How was it made?** {}", making.words(std::slice::from_ref(one)));
+        Ok(page)
+    })
 }
 
 /// Writes the report of several studies: a front page, the list of the studies, and the page of each that has one.
@@ -277,62 +275,40 @@ fn write_all(
     start: Instant,
 ) -> anyhow::Result<()> {
     let studies = out.join("studies");
+    let write = |one: &StudyResults<'_>| {
+        let name = slug(&one.study.name);
+        let findings = format!("{name}.findings");
+        write_study(&studies, one, [&name, &name, &findings], |page| Ok(among_others(page)))
+    };
     // Collected before the first error is taken: the same error every time.
-    let written: Vec<anyhow::Result<()>> =
-        results.par_iter().filter(|one| one.has_page).map(|one| write_study(&studies, one)).collect();
+    let written: Vec<_> = results.par_iter().filter(|one| one.has_page).map(write).collect();
     written.into_iter().collect::<anyhow::Result<()>>()?;
-    write_both(&studies, "index", "README", &studies_page(results))?;
+    write_both(&studies, ["index", "README"], &studies_page(results), &[])?;
     let answers = Answers::new(results, changes)?;
     write_page(&out.join("findings.json"), &json_of(&findings_json(&answers.findings))?)?;
     making.seconds = start.elapsed().as_secs_f64();
     let front = Page { files: Some("answers".to_owned()), ..answer_page(&answers, &making)? };
-    write_linked(out, ["index", "README"], &front, results)?;
+    write_both(out, ["index", "README"], &front, results)?;
     if let Some(race) = &answers.race {
         let tables = out.join("tables");
         write_page(&tables.join("race.csv"), &race_tables::whole_table(race).to_plain_csv()?)?;
         write_page(&tables.join("profile.csv"), &race_tables::profile_table(race).to_plain_csv()?)?;
-        write_linked(out, ["race"; 2], &matrix_page(race), results)?;
+        write_both(out, ["race"; 2], &matrix_page(race), results)?;
     }
     Ok(())
 }
 
-/// A page of all studies. Where a study has no page of its own, and in Markdown, whose pages of studies no repository keeps, links
-/// lead to its file, or to the list of the studies.
-fn write_linked(
-    out: &Path,
-    [html, markdown]: [&str; 2],
-    page: &Page,
-    results: &[StudyResults<'_>],
+/// Writes the page of a study, finished for where it stands, with its answers for programs, its file, and its measures as CSV.
+fn write_study(
+    folder: &Path,
+    one: &StudyResults<'_>,
+    [html, markdown, json]: [&str; 3],
+    finished: impl FnOnce(Page) -> anyhow::Result<Page>,
 ) -> anyhow::Result<()> {
-    let (mut of_html, mut of_markdown) = (render_html(page)?, render_markdown(page)?);
-    for one in results {
-        let (name, file) = (slug(&one.study.name), file_from(out, one));
-        if !one.has_page {
-            let file = file.as_deref().unwrap_or("studies/index.html");
-            of_html = of_html.replace(&format!("\"studies/{name}.html\""), &format!("\"{file}\""));
-        }
-        let listed = (!one.has_page).then(|| "studies/README.md".to_owned());
-        if let Some(file) = file.or(listed) {
-            of_markdown = of_markdown.replace(&format!("](studies/{name}.md)"), &format!("]({file})"));
-        }
-    }
-    write_page(&out.join(format!("{html}.html")), &of_html)?;
-    write_page(&out.join(format!("{markdown}.md")), &of_markdown)?;
-    write_exports(out, page)
-}
-
-/// The page of a study among others, with its answers for programs.
-fn write_study(studies: &Path, one: &StudyResults<'_>) -> anyhow::Result<()> {
     let name = slug(&one.study.name);
     let findings = answers(std::slice::from_ref(one), Place::Study)?;
-    write_both(studies, &name, &name, &among_others(study_page(one, &findings)?))?;
-    write_page(&studies.join(format!("{name}.findings.json")), &json_of(&findings_json(&findings))?)?;
-    write_study_files(studies, one)
-}
-
-/// The file of a study, and its measures as CSV.
-fn write_study_files(folder: &Path, one: &StudyResults<'_>) -> anyhow::Result<()> {
-    let name = slug(&one.study.name);
+    write_both(folder, [html, markdown], &finished(study_page(one, &findings)?)?, &[])?;
+    write_page(&folder.join(format!("{json}.json")), &json_of(&findings_json(&findings))?)?;
     let file = Path::new(&one.file);
     let text = match shipped_study(&one.study.name) {
         Some(shipped) if !file.is_file() => shipped.text.clone(),
@@ -344,16 +320,31 @@ fn write_study_files(folder: &Path, one: &StudyResults<'_>) -> anyhow::Result<()
     write_page(&folder.join("tables").join(format!("{name}.csv")), &csv)
 }
 
-/// A page as HTML and Markdown, with its figures and tables as files.
-fn write_both(folder: &Path, html: &str, markdown: &str, page: &Page) -> anyhow::Result<()> {
-    write_page(&folder.join(format!("{html}.html")), &render_html(page)?)?;
-    write_page(&folder.join(format!("{markdown}.md")), &render_markdown(page)?)?;
+/// A page as HTML and Markdown, with its figures and tables as files. Links to a study without a page of its own, and in Markdown, whose
+/// pages of studies no repository keeps, lead to its file, or to the list of the studies.
+fn write_both(
+    folder: &Path,
+    [html, markdown]: [&str; 2],
+    page: &Page,
+    linked: &[StudyResults<'_>],
+) -> anyhow::Result<()> {
+    let (mut of_html, mut of_markdown) = (render_html(page)?, render_markdown(page)?);
+    for one in linked {
+        let name = slug(&one.study.name);
+        let shipped = format!("studies/{}.toml", one.study.name);
+        let file = path_from(folder, &one.file).or_else(|| path_from(folder, &shipped));
+        if !one.has_page {
+            let file = file.as_deref().unwrap_or("studies/index.html");
+            of_html = of_html.replace(&format!("\"studies/{name}.html\""), &format!("\"{file}\""));
+        }
+        let listed = (!one.has_page).then(|| "studies/README.md".to_owned());
+        if let Some(file) = file.or(listed) {
+            of_markdown = of_markdown.replace(&format!("](studies/{name}.md)"), &format!("]({file})"));
+        }
+    }
+    write_page(&folder.join(format!("{html}.html")), &of_html)?;
+    write_page(&folder.join(format!("{markdown}.md")), &of_markdown)?;
     write_exports(folder, page)
-}
-
-/// The path from the folder of the report to the file of a study; of a shipped one to that of this repository.
-fn file_from(out: &Path, result: &StudyResults<'_>) -> Option<String> {
-    path_from(out, &result.file).or_else(|| path_from(out, &format!("studies/{}.toml", result.study.name)))
 }
 
 /// The path from the folder of the report to the file of a study, if both are below the current folder: the front page

@@ -2,8 +2,10 @@
 
 mod scored_files;
 
+use crate::case::grouping::distinct;
 use crate::case::{Case, Norm, Quantity};
 use crate::cli::exit::{Ended, Exit};
+use crate::cli::help::EXPERT;
 use crate::cli::output::{TableFormat, csv_of, json_of, print_data, print_tables, say, write_document};
 use crate::cli::study_files::tell_warnings;
 use crate::import::mapping::Axes;
@@ -11,12 +13,11 @@ use crate::import::mapping::preset::convention_of;
 use crate::record::ERROR_COLUMNS;
 use crate::report::junit::{ScoredCase, junit_of_score};
 use crate::report::tables::scores;
-use crate::score::completeness::Lack;
+use crate::score::completeness::{Finding, Lack};
 use crate::score::results::{Comparison, Results, Scored};
 use crate::score::score_series::ScoredSeries;
 use crate::study::overrides::{Asked, Outputs};
 use crate::study::solver::Preset;
-use oedometer_exact::reference::ReferenceKind;
 use oedometer_scenes::Scene;
 use oedometer_wording::{count_of, typed};
 use std::path::PathBuf;
@@ -50,7 +51,7 @@ pub struct Arguments {
     #[command(flatten)]
     outputs: Outputs,
     /// Largest relative difference between a time and the requested one, or that of another mesh
-    #[arg(long, value_name = "SHARE", default_value_t = 1e-3, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SHARE", default_value_t = 1e-3, allow_hyphen_values = true, help_heading = EXPERT)]
     time_tolerance: f64,
     /// Cells over the height of each result, comma-separated: adds orders and classes
     #[arg(long, value_name = "LIST")]
@@ -106,22 +107,23 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let are_cells_found = arguments.cells.is_none();
     let comparison = Comparison { tolerance, are_cells_found, ..asked.comparison(&mapping) };
     let mut results = Results::of(runs, &comparison)?;
-    let series = results.series();
-    if let Some((series, cells)) = &series {
-        results.keep_series(series, cells);
+    let series = results.join_meshes();
+    if let Some(series) = &series {
         results.diagnose_water(series)?;
     }
-    lead(&results, arguments, comparison.references)?;
+    let lacks = results.all.iter().flat_map(|scored| arguments.lacks_of(scored, &results)).collect();
+    let reference = comparison.references.first().map(|kind| kind.name());
+    let errors = arguments.below.map(|bound| errors_below(bound, &results.all, reference)).transpose()?;
+    let judged = [lacks, errors.unwrap_or_default()];
+    lead(&results, arguments, &judged)?;
     match arguments.format {
         TableFormat::Json => print_data(&json_of(&results.scores())?)?,
         TableFormat::Csv => {
-            print_data(&errors_csv(&results, series.as_ref().map(|(series, _)| &series[..]))?)?;
+            print_data(&errors_csv(&results, series.as_deref())?)?;
         }
         _ => {
             let mut tables = Vec::new();
-            if let Some((series, cells)) = &series {
-                tables.push(scores::series_table(series, cells));
-            }
+            tables.extend(series.as_deref().map(scores::series_table));
             for scored in &results.all {
                 let title = format!("{}: {}", arguments.scene, scored.name());
                 tables.push(scores::errors_table(&scored.score, &title));
@@ -130,46 +132,40 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         }
     }
     say!("{}", groups_of(case));
-    let (findings, exit) = judged(&results, arguments.below, arguments.strict, comparison.references)?;
+    tell(&results, arguments, &judged);
+    let passes = judged.iter().flatten().all(|case| case.failure.is_none());
     if let Some(path) = &arguments.junit {
         let notes = results.all.iter().flat_map(|scored| {
             scored.score.diagnosis.iter().map(move |sentence| format!("{}: {sentence}", scored.name()))
         });
-        write_document(path, &junit_of_score(&arguments.scene, &findings, notes)?)?;
+        write_document(path, &junit_of_score(&arguments.scene, &judged.concat(), notes)?)?;
     }
-    Ok(exit)
+    Ok(if passes || !arguments.is_gate() { Exit::Pass } else { Exit::VerdictFailed })
 }
 
 /// The first lines: what fails, and what seems to be wrong.
-fn lead(results: &Results, arguments: &Arguments, references: &[ReferenceKind]) -> anyhow::Result<()> {
-    let is_gate = arguments.strict || arguments.below.is_some();
-    let reference = references.first().map(|kind| kind.name());
-    let errors = arguments.below.map(|bound| errors_below(bound, &results.all, reference)).transpose()?;
-    let judged = errors.as_ref().map_or(0, Vec::len);
-    let too_large = errors.into_iter().flatten().filter_map(|finding| finding.failure);
-    let incomplete = results.all.iter().filter(|_| is_gate).flat_map(|scored| {
-        let name = scored.name();
-        scored
-            .score
-            .warnings
-            .iter()
-            .chain(scored.score.not_judged.iter().filter(|_| arguments.strict))
-            .map(move |lack| format!("{name}: {}: {}", lack.name.name(), lack.sentence))
-    });
-    let reasons: Vec<String> = too_large.chain(incomplete).collect();
+fn lead(
+    results: &Results,
+    arguments: &Arguments,
+    [lacks, errors]: &[Vec<ScoredCase>; 2],
+) -> anyhow::Result<()> {
+    let is_gate = arguments.is_gate();
+    let lacks = lacks.iter().filter(|_| is_gate);
+    let reasons: Vec<&String> = errors.iter().chain(lacks).filter_map(|case| case.failure.as_ref()).collect();
     let more = match reasons.len() {
         0 | 1 => String::new(),
         all => format!(" (and {} more below)", all - 1),
     };
     match (reasons.first(), arguments.below) {
         (Some(first), _) => say!("✗ {first}{more}"),
-        (None, Some(bound)) => say!("✓ {} below {bound:e}", count_of(judged, "error is", "errors are")),
+        (None, Some(bound)) => {
+            say!("✓ {} below {bound:e}", count_of(errors.len(), "error is", "errors are"));
+        }
         (None, None) if is_gate => say!("✓ the results are complete"),
         (None, None) => {}
     }
     for scored in &results.all {
-        let name =
-            if is_gate || results.all.len() > 1 { format!("{}: ", scored.name()) } else { String::new() };
+        let name = arguments.name_of(scored, results);
         for sentence in &scored.score.diagnosis {
             say!("diagnosis: {name}{sentence}");
             if arguments.format == TableFormat::Markdown {
@@ -178,6 +174,60 @@ fn lead(results: &Results, arguments: &Arguments, references: &[ReferenceKind]) 
         }
     }
     Ok(())
+}
+
+/// The last lines: what is incomplete, notes, and each error that is too large.
+fn tell(results: &Results, arguments: &Arguments, [lacks, errors]: &[Vec<ScoredCase>; 2]) {
+    let is_gate = arguments.is_gate();
+    let word = if is_gate { "fail" } else { "warning" };
+    for lack in distinct(lacks.iter().filter_map(|case| case.failure.as_ref())) {
+        say!("{word}: {lack}");
+    }
+    for scored in &results.all {
+        let name = arguments.name_of(scored, results);
+        for note in &scored.run.notes {
+            say!("note: {name}{note}");
+        }
+        for lack in scored.score.not_judged.iter().filter(|_| !arguments.strict) {
+            let but = if is_gate { "; `--strict` fails on this" } else { "" };
+            say!("note: {name}{}{but}", lack.sentence);
+        }
+    }
+    if is_gate && !results.are_times_known() {
+        say!("note: missing times were not checked: name the required times with --time-factor");
+    }
+    for failure in errors.iter().filter_map(|case| case.failure.as_ref()) {
+        say!("fail: {failure}");
+    }
+}
+
+impl Arguments {
+    /// Whether results are judged: then incomplete ones fail, with `--strict` also those that leave something unjudged.
+    fn is_gate(&self) -> bool {
+        self.strict || self.below.is_some()
+    }
+
+    /// The name of a result before a sentence, where there are several or they are judged.
+    fn name_of(&self, scored: &Scored, results: &Results) -> String {
+        let is_named = self.is_gate() || results.all.len() > 1;
+        if is_named { format!("{}: ", scored.name()) } else { String::new() }
+    }
+
+    /// What a result lacks, or that it is complete.
+    fn lacks_of(&self, scored: &Scored, results: &Results) -> Vec<ScoredCase> {
+        let not_judged = scored.score.not_judged.iter().filter(|_| self.strict);
+        let case = |lack: &Finding| {
+            // What the mapping does not declare is the same in every result.
+            let is_of_mapping = lack.name == Lack::Undeclared;
+            let name = if is_of_mapping { String::new() } else { self.name_of(scored, results) };
+            let (word, sentence) = (lack.name.name(), &lack.sentence);
+            let subject = format!("{}/{word}", scored.name());
+            ScoredCase { subject, failure: Some(format!("{name}{word}: {sentence}")) }
+        };
+        let lacks: Vec<ScoredCase> = scored.score.warnings.iter().chain(not_judged).map(case).collect();
+        let complete = || vec![ScoredCase { subject: format!("{}/complete", scored.name()), failure: None }];
+        if lacks.is_empty() { complete() } else { lacks }
+    }
 }
 
 /// Quantities by their names.
@@ -229,62 +279,6 @@ fn series_fields(series_of_mesh: Option<(usize, &ScoredSeries)>) -> [String; 3] 
 /// Share of the load, or of the final settlement, below which an exact value all but vanishes and errors are judged on
 /// that scale.
 const VANISHING: f64 = 1e-3;
-
-/// Prints what the results lack and whether they pass. With `--below` or `--strict`, incomplete results fail; with `--strict`
-/// also those that leave something unjudged.
-fn judged(
-    results: &Results,
-    below: Option<f64>,
-    strict: bool,
-    references: &[ReferenceKind],
-) -> anyhow::Result<(Vec<ScoredCase>, Exit)> {
-    let is_gate = strict || below.is_some();
-    let mut findings = Vec::new();
-    let mut is_undeclared_told = false;
-    for scored in &results.all {
-        let is_named = is_gate || results.all.len() > 1;
-        let name = if is_named { format!("{}: ", scored.name()) } else { String::new() };
-        let not_judged = &scored.score.not_judged;
-        let failing = not_judged.iter().filter(|_| strict);
-        for lack in scored.score.warnings.iter().chain(failing.clone()) {
-            let word = if is_gate { "fail" } else { "warning" };
-            let is_of_mapping = lack.name == Lack::Undeclared;
-            if !(is_of_mapping && is_undeclared_told) {
-                let name = if is_of_mapping { "" } else { &name };
-                say!("{word}: {name}{}: {}", lack.name.name(), lack.sentence);
-            }
-            is_undeclared_told |= is_of_mapping;
-            let subject = format!("{}/{}", scored.name(), lack.name.name());
-            findings.push(ScoredCase { subject, failure: Some(lack.sentence.clone()) });
-        }
-        if is_gate && scored.score.warnings.is_empty() && failing.count() == 0 {
-            findings.push(ScoredCase { subject: format!("{}/complete", scored.name()), failure: None });
-        }
-        for note in &scored.run.notes {
-            say!("note: {name}{note}");
-        }
-        for lack in not_judged.iter().filter(|_| !strict) {
-            let but = if is_gate { "; `--strict` fails on this" } else { "" };
-            say!("note: {name}{}{but}", lack.sentence);
-        }
-    }
-    if !is_gate {
-        return Ok((Vec::new(), Exit::Pass));
-    }
-    if !results.are_times_known() {
-        say!("note: missing times were not checked: name the required times with --time-factor");
-    }
-    if let Some(bound) = below {
-        let reference = references.first().map(|kind| kind.name());
-        let errors = errors_below(bound, &results.all, reference)?;
-        for failure in errors.iter().filter_map(|finding| finding.failure.as_ref()) {
-            say!("fail: {failure}");
-        }
-        findings.extend(errors);
-    }
-    let passes = findings.iter().all(|finding| finding.failure.is_none());
-    Ok((findings, if passes { Exit::Pass } else { Exit::VerdictFailed }))
-}
 
 /// Whether every main error against the first reference is below a bound; NaN is not. Where the exact value all but
 /// vanishes, as a displacement does at `t = 0`, the error is judged on the scale of the load.

@@ -1,5 +1,5 @@
 //! Figures of every kind from made-up data.
-use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle, Style};
+use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, Style};
 use std::f64::consts::PI;
 
 /// Terzaghi's series, good enough for a picture.
@@ -44,9 +44,10 @@ pub(super) fn convergence() -> Chart {
         }
         chart.series.push(Series::new(name, points));
     }
-    chart.triangles = [(1.0, METHODS[2]), (2.0, METHODS[4])]
-        .map(|(slope, name)| SlopeTriangle { slope, beside: name.into() })
-        .to_vec();
+    for slope in [1, 2] {
+        let guide = vec![(h[4], 1e-5), (h[0], 1e-5 * 16f64.powi(slope))];
+        chart.series.push(Series::theory(format!("order {slope}"), guide));
+    }
     chart.rules.push(Rule { at: 1.4e-4, label: "water storage: 1.4·10⁻⁴".into() });
     chart
 }
@@ -126,10 +127,6 @@ fn crowd() -> Chart {
         let points =
             (0..6).map(|k| 2f64.powi(-2 * k)).map(|h| (h, 10f64.powi(2 - i32::from(i) / 3) * h.powf(p)));
         chart.series.push(Series::new(name, points.collect()));
-    }
-    for (i, slope) in [(3, 1.0), (6, 2.5), (12, 4.0)] {
-        let beside = chart.series[i].name.clone();
-        chart.triangles.push(SlopeTriangle { slope, beside });
     }
     chart.rules.push(Rule { at: 1e-6, label: "round-off".into() });
     chart
