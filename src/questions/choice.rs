@@ -400,17 +400,15 @@ pub fn dot_plot(race: &RaceFindings, read_out: ReadOut) -> Figure {
         ChartAxis::linear("row"),
     );
     chart.size = Size { width: 950.0, ..Size::default() };
-    for (name, slot) in names.iter().zip(slots(&names)) {
+    for ((name, word), slot) in methods.iter().zip(slots(&names)) {
         let points = race.situations.iter().enumerate().filter_map(|(place, situation)| {
             Some((situation.ratio(entry_of(situation, name)?, &terms)?, place as f64))
         });
-        chart.series.push(Series::new(*name, points.collect()).style(Style::Markers).slot(slot));
+        let points: Vec<(f64, f64)> = points.collect();
+        let label = format!("{name}, {word}: {} of {}", points.len(), race.situations.len());
+        chart.series.push(Series::new(label, points).style(Style::Markers).slot(slot));
     }
-    let notes = methods.iter().zip(&chart.series);
-    let notes =
-        notes.map(|((_, word), one)| format!("{word}: {} of {}", one.points.len(), race.situations.len()));
     chart.rows = Some(ChartRows {
-        series: notes.collect(),
         without: "Does not reach 1 %".to_owned(),
         heads: ["Cheapest", "ms", "cells", "step"].map(str::to_owned).to_vec(),
         rows: race.situations.iter().map(|one| plotted_row(one, &names, &terms)).collect(),

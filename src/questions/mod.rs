@@ -30,50 +30,32 @@ pub mod words;
 pub mod work_precision;
 
 use crate::judge::study_results::StudyResults;
-use crate::questions::audit::AUDIT;
-use crate::questions::checks::CHECKS;
-use crate::questions::choice::CHOICE;
-use crate::questions::convergence::CONVERGENCE;
-use crate::questions::cost::COST;
-use crate::questions::expected::EXPECTED;
 use crate::questions::finding::{Finding, Place, Question};
-use crate::questions::load_curves::LOAD_CURVES;
-use crate::questions::locking::LOCKING;
-use crate::questions::outside_runs::OUTSIDE_RUNS;
-use crate::questions::paper::PAPER;
-use crate::questions::peers::PEERS;
-use crate::questions::points::{POINTS, WATER};
-use crate::questions::profiles::PROFILES;
-use crate::questions::setting::SETTING;
-use crate::questions::settlement::SETTLEMENT;
-use crate::questions::stability::STABILITY;
-use crate::questions::time_step::TIME_STEP;
-use crate::questions::within::WITHIN;
 use crate::race::RaceFindings;
 use oedometer_exact::ExactError;
 use rayon::prelude::*;
 
 /// Every question, in the order of a page.
 pub static QUESTIONS: &[&Question] = &[
-    &EXPECTED,
-    &SETTING,
-    &CHOICE,
-    &WITHIN,
-    &SETTLEMENT,
-    &CONVERGENCE,
-    &TIME_STEP,
-    &POINTS,
-    &WATER,
-    &COST,
-    &PEERS,
-    &PAPER,
-    &LOCKING,
-    &LOAD_CURVES,
-    &PROFILES,
-    &STABILITY,
-    &CHECKS,
-    &OUTSIDE_RUNS,
-    &AUDIT,
+    &expected::EXPECTED,
+    &setting::SETTING,
+    &choice::CHOICE,
+    &within::WITHIN,
+    &settlement::SETTLEMENT,
+    &convergence::CONVERGENCE,
+    &time_step::TIME_STEP,
+    &points::POINTS,
+    &points::WATER,
+    &cost::COST,
+    &peers::PEERS,
+    &paper::PAPER,
+    &locking::LOCKING,
+    &load_curves::LOAD_CURVES,
+    &profiles::PROFILES,
+    &stability::STABILITY,
+    &checks::CHECKS,
+    &outside_runs::OUTSIDE_RUNS,
+    &audit::AUDIT,
 ];
 
 /// What studies answer at a place, in the order of the questions.
@@ -94,7 +76,7 @@ pub fn answers_with(
     race: Option<&RaceFindings>,
 ) -> Result<Vec<Finding>, ExactError> {
     let ask = |question: &&Question| match race {
-        Some(race) if question.id == CHOICE.id => Ok(choice::answer(race)),
+        Some(race) if question.id == choice::CHOICE.id => Ok(choice::answer(race)),
         _ => (question.ask)(studies),
     };
     let asked: Vec<_> = QUESTIONS.par_iter().filter(|question| question.stands_at(place)).map(ask).collect();

@@ -155,20 +155,12 @@ fn write_plan(out: &mut dyn std::io::Write, studies: &[(&Study, Vec<&Case>)]) ->
 /// Says what the cases take in all, and of each study what takes too long.
 fn tell_of_time(studies: &[(&Study, Vec<&Case>)]) {
     for (study, cases) in studies {
-        let mut slowest: Option<&Case> = None;
-        let mut most = 0.0;
-        for case in cases {
-            let seconds = study.estimated_seconds(case);
-            if seconds > most {
-                (most, slowest) = (seconds, Some(*case));
-            }
-        }
-        let slowest = slowest.map(|case| LongestCase {
-            study: study.name.clone(),
-            case: case.clone(),
-            case_seconds: study.case_seconds,
-        });
-        if let Some(note) = slowest.as_ref().and_then(note_on_longest) {
+        let by_time =
+            |a: &&&Case, b: &&&Case| study.estimated_seconds(a).total_cmp(&study.estimated_seconds(b));
+        // The first of those that take as long.
+        let Some(slowest) = cases.iter().rev().max_by(by_time) else { continue };
+        let (study, case, case_seconds) = (study.name.clone(), (*slowest).clone(), study.case_seconds);
+        if let Some(note) = note_on_longest(&LongestCase { study, case, case_seconds }) {
             say!("{note}");
         }
     }

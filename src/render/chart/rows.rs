@@ -1,7 +1,7 @@
 //! Dot plots with words: a row a problem, markers on a logarithmic scale, beside them why a series has none, and columns of
 //! words at the right. On a narrow screen the words stand below the markers.
 
-use crate::render::chart::looks::{FONT, Look, draw_marker, looks};
+use crate::render::chart::looks::{FONT, Legend, Look, draw_marker, looks};
 use crate::render::chart::svg::{Area, Drawn, Font, NARROW, Px, group, layer, line, stroke, write};
 use crate::render::chart::{Chart, Series};
 use crate::render::palette::{FRAME, GRID, QUIET, SCREEN};
@@ -12,8 +12,6 @@ use plotters::style::text_anchor::HPos;
 /// The rows of a dot plot, from the top: a point of a series lies in the row of its second number.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ChartRows {
-    /// What stands behind the name of each series in the legend.
-    pub series: Vec<String>,
     /// Head of the words of series without a point.
     pub without: String,
     /// Heads of the columns at the right.
@@ -37,7 +35,6 @@ pub struct ChartRow {
 
 const STRONG: Font = Font { is_bold: true, ..FONT };
 const SMALL: Font = Font { size: 10.5, ..FONT };
-const LEGEND: f64 = 20.0;
 const ROW: f64 = 21.0;
 const BETWEEN_FAMILIES: f64 = 6.0;
 /// Height of the lines that say what stands below the markers.
@@ -113,20 +110,16 @@ impl Places {
 pub(super) fn elements(chart: &Chart, rows: &ChartRows, is_narrow: bool) -> Result<(Px, String), String> {
     let looks = looks(chart);
     let places = if is_narrow { Places::narrow() } else { Places::wide(chart, rows) };
-    let entries = legend(chart, rows, &looks, places.width);
-    let legend_height = entries.last().map_or(0.0, |(at, ..)| at.1 + LEGEND);
-    let head = legend_height + if is_narrow { 34.0 + NARROW_HEADS } else { 40.0 };
+    let legend = Legend::of(chart, &looks, |_| true, places.width - 2.0 * PAD);
+    let head = legend.height() + if is_narrow { 34.0 + NARROW_HEADS } else { 40.0 };
     let tops = tops(rows, head, is_narrow);
     let bottom = tops.last().copied().unwrap_or(head);
     let size = (places.width, (bottom + PAD).ceil());
     let mut out = layer(size, |area| {
         area.fill(&SCREEN.light)?;
-        for (at, words, look, slot) in &entries {
-            draw_marker(area, (at.0 + 6.0, at.1), *slot, RADIUS, look.colour)?;
-            write(area, words, (at.0 + 16.0, at.1), Font { colour: look.colour, ..STRONG }, HPos::Left)?;
-        }
         heads(area, chart, rows, (&places, &looks), (head, bottom), is_narrow)
     })?;
+    out += &legend.elements(size, (PAD, 4.0))?;
     for (place, row) in rows.rows.iter().enumerate() {
         let top = tops[place];
         let drawn = layer(size, |area| {
@@ -163,23 +156,6 @@ fn tops(rows: &ChartRows, head: f64, is_narrow: bool) -> Vec<f64> {
         tops.push(tops[place] + height + if ends { BETWEEN_FAMILIES } else { 0.0 });
     }
     tops
-}
-
-/// The entries of the legend with their places, one below the other where there is no room beside.
-fn legend(chart: &Chart, rows: &ChartRows, looks: &[Look], room: f64) -> Vec<(Px, String, Look, usize)> {
-    let (mut x, mut y) = (PAD, LEGEND / 2.0 + 2.0);
-    let mut out = Vec::new();
-    for (place, (series, look)) in chart.series.iter().zip(looks).enumerate() {
-        let note = rows.series.get(place).map_or("", String::as_str);
-        let words = if note.is_empty() { series.name.clone() } else { format!("{}, {note}", series.name) };
-        let needed = 16.0 + 1.06 * STRONG.size * width(&words) + 18.0;
-        if x > PAD && x + needed > room {
-            (x, y) = (PAD, y + LEGEND);
-        }
-        out.push(((x, y), words, *look, look.marker.unwrap_or(place)));
-        x += needed;
-    }
-    out
 }
 
 /// The words above the columns, and the scale with its lines.
@@ -301,7 +277,7 @@ fn told(chart: &Chart, place: usize, row: &ChartRow) -> String {
         let word = row.without.get(number).map_or("", String::as_str);
         let value = at
             .map_or_else(|| word.to_owned(), |(x, _)| format!("× {}", crate::render::number::two_digits(*x)));
-        format!("{}: {value}", series.name)
+        format!("{}: {value}", series.name.split(", ").next().unwrap_or_default())
     });
     format!("{}: {}. {}", row.name, row.words.join(", "), series.collect::<Vec<_>>().join("; "))
 }
@@ -319,7 +295,7 @@ mod tests {
                 .with_labelled_ticks([(1.0, "×1".to_owned())]),
             ChartAxis::linear(""),
         )
-        .with(Series::new("MPM", vec![(1.0, 0.0)]).style(Style::Markers))
+        .with(Series::new("MPM, 2 of 2", vec![(1.0, 0.0)]).style(Style::Markers))
         .with(Series::new("GIMP", vec![(1.0, 0.0), (50.0, 1.0)]).style(Style::Markers));
         let row = |name: &str, family: &str, without: [&str; 2], words: &[&str]| ChartRow {
             name: name.to_owned(),
@@ -328,7 +304,6 @@ mod tests {
             words: words.iter().map(|word| (*word).to_owned()).collect(),
         };
         chart.rows = Some(ChartRows {
-            series: vec!["2 of 2".to_owned()],
             without: "does not arrive".to_owned(),
             heads: vec!["cheapest".to_owned(), "cells".to_owned()],
             rows: vec![row("a", "F", ["", ""], &["MPM", "8"]), row("b", "G", ["locks", ""], &["none"])],

@@ -3,9 +3,12 @@
 use crate::render::marked_text::{paragraphs, to_html};
 use crate::render::page::contents::check;
 use crate::render::page::walk::{Group, Walk, Writer};
-use crate::render::page::{Figure, Page, Section, shown_rows};
+use crate::render::page::{Callout, Figure, Page, Section, shown_rows};
 use crate::render::table::{Mood, Table};
 use crate::render::{RenderError, escape, palette};
+use minijinja::value::Serde;
+use minijinja::{Environment, Value};
+use serde_json::json;
 use std::fmt::Write as _;
 
 const TEMPLATE: &str = include_str!("page.html");
@@ -21,68 +24,32 @@ pub fn render_html(page: &Page) -> Result<String, RenderError> {
     check(page)?;
     let mut sections = Html { out: String::new(), has_files: page.files.is_some() };
     Walk::page(page, &mut sections)?;
-    let footer = marked(&page.footer);
-    let filter = page.filter.as_deref().map(escape::plain_html);
-    let callout = page.callout.as_ref().map(|(mood, text)| callout(*mood, text));
-    Ok(filled(
-        TEMPLATE,
-        &[
-            ("title", &escape::plain_html(&page.title)),
-            ("style", &(STYLE.to_owned() + &palette::dark_rules(".card"))),
-            ("wide", if page.is_wide { " wide" } else { "" }),
-            ("links", &links(&page.links)),
-            ("heading", &escape::html(&page.title)),
-            ("lead", &marked(&page.lead)),
-            ("callout", &callout.unwrap_or_default()),
-            ("contents", &contents(page)),
-            ("filter", &filter.map(|filter| format!(" data-filter=\"{filter}\"")).unwrap_or_default()),
-            ("sections", &sections.out),
-            ("footer", &if footer.is_empty() { footer } else { format!("<footer>\n{footer}</footer>\n") }),
-            ("script", SCRIPT),
-        ],
-    ))
-}
-
-/// A template with texts in the places of their names. What is filled in is not looked at again.
-fn filled(template: &str, texts: &[(&str, &str)]) -> String {
-    let mut out = String::new();
-    for (at, part) in template.split("{{ ").enumerate() {
-        let (name, after) = if at == 0 { ("", part) } else { part.split_once(" }}").unwrap_or((part, "")) };
-        out.push_str(texts.iter().find(|(known, _)| *known == name).map_or("", |(_, text)| text));
-        out.push_str(after);
-    }
-    out
-}
-
-/// The links at the top of a page.
-fn links(links: &[(String, String)]) -> String {
-    let link = |(words, target): &(String, String)| {
-        format!("<a href=\"{}\">{}</a>\n", escape::plain_html(target), escape::html(words))
-    };
-    let links: String = links.iter().map(link).collect();
-    if links.is_empty() {
-        links
-    } else {
-        format!("<nav class=\"links\" aria-label=\"Pages\">\n{links}</nav>\n")
-    }
+    let link = |(words, target): &(String, String)| (escape::html(words), escape::plain_html(target));
+    let callout = |(mood, text): &Callout| (mood.class(), mood.mark(), marked(text).trim_end().to_owned());
+    // No list where links at the top have the sections.
+    let has_room = page.links.is_empty() || !page.is_wide;
+    let has_contents = has_room && (2..=MOST_CONTENTS).contains(&page.sections.len());
+    let entry = |section: &Section| (section.id.clone(), escape::html(&section.heading), mark(section));
+    let contents = page.sections.iter().filter(|_| has_contents).map(entry);
+    let facts = json!({
+        "title": escape::plain_html(&page.title),
+        "style": STYLE.to_owned() + &palette::dark_rules(".card"),
+        "wide": if page.is_wide { " wide" } else { "" },
+        "links": page.links.iter().map(link).collect::<Vec<_>>(),
+        "heading": escape::html(&page.title),
+        "lead": marked(&page.lead),
+        "callout": page.callout.as_ref().map(callout),
+        "contents": contents.collect::<Vec<_>>(),
+        "filter": page.filter.as_deref().map(escape::plain_html),
+        "sections": sections.out,
+        "footer": marked(&page.footer),
+        "script": SCRIPT,
+    });
+    Ok(Environment::new().render_str(TEMPLATE, Value::from(Serde(facts)))? + "\n")
 }
 
 /// Sections that a list of contents may have: a longer one hides the page on a phone.
 const MOST_CONTENTS: usize = 20;
-
-/// The list of the sections, where there are several and not too many, and no links at the top that have them.
-fn contents(page: &Page) -> String {
-    let is_told = page.is_wide && !page.links.is_empty();
-    if is_told || !(2..=MOST_CONTENTS).contains(&page.sections.len()) {
-        return String::new();
-    }
-    let mut out = "<nav aria-label=\"Contents\">\n<p class=\"nav-title\">Contents</p>\n<ol>\n".to_owned();
-    for section in &page.sections {
-        let (id, heading, mark) = (&section.id, escape::html(&section.heading), mark(section));
-        let _ = writeln!(out, "<li><a href=\"#{id}\">{heading}</a>{mark}</li>");
-    }
-    out + "</ol>\n</nav>\n"
-}
 
 fn mark(section: &Section) -> String {
     let marked = |mood: Mood| format!(" <span class=\"{}\">{}</span>", mood.class(), mood.mark());
@@ -92,12 +59,6 @@ fn mark(section: &Section) -> String {
 /// The paragraphs of a lightly marked text.
 fn marked(text: &str) -> String {
     paragraphs(text).iter().fold(String::new(), |out, paragraph| out + "<p>" + &to_html(paragraph) + "</p>\n")
-}
-
-fn callout(mood: Mood, text: &str) -> String {
-    let (class, mark, text) = (mood.class(), mood.mark(), marked(text));
-    let mark = format!("<span class=\"mark\" aria-hidden=\"true\">{mark}</span>");
-    format!("<aside class=\"callout {class}\">{mark}<div>{}</div></aside>\n", text.trim_end())
 }
 
 struct Html {

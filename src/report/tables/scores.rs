@@ -1,7 +1,7 @@
 //! Tables of a foreign result compared with references.
 
 use crate::case::grouping::distinct;
-use crate::case::quantity::{Norm, Quantity, Sample};
+use crate::case::quantity::{Norm, Quantity};
 use crate::record::ErrorRow;
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::render::{number, table};
@@ -25,48 +25,31 @@ pub fn errors_table(score: &Score, title: &str) -> Table {
     columns.extend(is_plane.then(|| TableColumn::number("and x/L")));
     columns.extend(table::columns("> share of squared error | > result there | > exact there"));
     let is_main = |row: &&ErrorRow| matches!(row.norm, Norm::L2 | Norm::Relative);
-    let index: HashMap<ErrorKey<'_>, &ErrorRow> =
-        score.errors.iter().map(|row| (error_key(row), row)).collect();
+    let key = |row: &ErrorRow| (row.time_factor.to_bits(), row.quantity, row.sample, row.norm);
+    let index: HashMap<_, &ErrorRow> =
+        score.errors.iter().map(|row| ((key(row), row.reference.as_str()), row)).collect();
     let worst_of: HashMap<(u64, Quantity), &WorstPlace> =
         score.worst.iter().map(|worst| ((worst.time_factor.to_bits(), worst.quantity), worst)).collect();
     let first = references.first().copied().unwrap_or_default();
-    let rows = score.errors.iter().filter(is_main).filter(|row| row.reference == first).map(|row| {
-        let mut cells =
-            vec![Cell::Number(row.time_factor), row.quantity.name().into(), row.sample.name().into()];
-        cells.extend(references.iter().map(|name| {
-            let like = ErrorRow { reference: (*name).to_owned(), ..row.clone() };
-            error_cell(index.get(&error_key(&like)).copied())
-        }));
-        let worst = worst_of.get(&(row.time_factor.to_bits(), row.quantity)).copied();
+    let resolved = score.errors.iter().filter(is_main).filter(|row| row.reference == first);
+    let resolved = resolved.map(|row| (row.time_factor, row.quantity, row.sample, row.norm, true));
+    let unresolved = score.unresolved.iter().filter(|one| one.reference == first);
+    let unresolved =
+        unresolved.map(|one| (one.time_factor, one.quantity, one.sample, one.quantity.first_norm(), false));
+    let rows = resolved.chain(unresolved).map(|(time_factor, quantity, sample, norm, is_resolved)| {
+        let time = time_factor.to_bits();
+        let mut cells = vec![Cell::Number(time_factor), quantity.name().into(), sample.name().into()];
+        // Against another reference there may be an error where the first resolves none.
+        let error = |name: &&str| index.get(&((time, quantity, sample, norm), *name)).copied();
+        cells.extend(references.iter().map(|name| error_cell(error(name))));
+        let worst = worst_of.get(&(time, quantity)).copied().filter(|_| is_resolved);
         cells.extend(place_cells(worst, is_plane));
         cells
     });
-    let unresolved = score.unresolved.iter().filter(|one| one.reference == first).map(|one| {
-        let mut cells =
-            vec![Cell::Number(one.time_factor), one.quantity.name().into(), one.sample.name().into()];
-        // Against another reference there may be one.
-        let norm = one.quantity.first_norm();
-        cells.extend(references.iter().map(|name| {
-            error_cell(
-                index.get(&(one.time_factor.to_bits(), one.quantity, one.sample, norm, *name)).copied(),
-            )
-        }));
-        cells.resize_with(columns.len(), || Cell::missing(NOT_RESOLVED));
-        cells
-    });
-    let rows: Vec<Vec<Cell>> = rows.chain(unresolved).collect();
     Table::of(title, columns, rows).note(
         "relative L2 error over the samples; settlement as s/s_exact − 1; ζ is the initial depth \
              over the height",
     )
-}
-
-/// What an error is of: time factor (its bits), quantity, sample, norm, reference.
-type ErrorKey<'a> = (u64, Quantity, Sample, Norm, &'a str);
-
-/// What an error is of.
-fn error_key(row: &ErrorRow) -> ErrorKey<'_> {
-    (row.time_factor.to_bits(), row.quantity, row.sample, row.norm, &row.reference)
 }
 
 fn error_cell(row: Option<&ErrorRow>) -> Cell {

@@ -62,8 +62,8 @@ pub struct Arguments {
     below: Option<f64>,
     /// Quantities intentionally missing from the files, comma-separated: pressure, `effective_stress`, displacement,
     /// settlement
-    #[arg(long, value_name = "QUANTITY", value_delimiter = ',')]
-    without: Vec<String>,
+    #[arg(long, value_name = "QUANTITY", value_delimiter = ',', value_parser = quantity_of)]
+    without: Vec<Quantity>,
     /// Fail (exit code 1) if the result is incomplete (volume, height, rows, times), or if something cannot be judged:
     /// the settlement, or nodes at the surface or the base
     #[arg(long)]
@@ -99,10 +99,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let asked = Asked::of_scene(&arguments.scene, &arguments.outputs)?;
     tell_warnings(&asked.study);
     let case = asked.case();
-    let without = quantities_of(&arguments.without)?;
-    let (mapping, mut runs) = scored_files::read(arguments, &without, case, &asked.requested)?;
+    let (mapping, mut runs) = scored_files::read(arguments, case, &asked.requested)?;
     for run in &mut runs {
-        run.leave_out(&without);
+        run.leave_out(&arguments.without);
     }
     let are_cells_found = arguments.cells.is_none();
     let comparison = Comparison { tolerance, are_cells_found, ..asked.comparison(&mapping) };
@@ -230,15 +229,9 @@ impl Arguments {
     }
 }
 
-/// Quantities by their names.
-fn quantities_of(typed: &[String]) -> anyhow::Result<Vec<Quantity>> {
-    let of = |name: &String| {
-        Quantity::named(name).ok_or_else(|| {
-            let names = Quantity::NAMES.join(", ");
-            Ended::usage(format!("`--without {name}` is not a quantity: expected one of {names}"))
-        })
-    };
-    typed.iter().map(of).collect()
+/// A quantity by its name.
+fn quantity_of(name: &str) -> Result<Quantity, String> {
+    Quantity::named(name).ok_or_else(|| format!("expected one of {}", Quantity::NAMES.join(", ")))
 }
 
 /// The size of what the reference neglects, in one line.
@@ -391,20 +384,6 @@ mod tests {
             }
         }
         assert!(errors_below(1e-3, &[], Some("own")).is_err(), "nothing to judge is no pass");
-    }
-
-    #[test]
-    fn a_quantity_has_a_name() {
-        let of = |typed: &[&str]| {
-            let typed: Vec<String> = typed.iter().map(|one| (*one).to_owned()).collect();
-            quantities_of(&typed).map_err(|error| error.to_string())
-        };
-        let both = vec![Quantity::Settlement, Quantity::EffectiveStress];
-        assert_eq!(of(&["settlement", "effective_stress"]), Ok(both));
-        assert_eq!(of(&[]), Ok(Vec::new()));
-        let told = "`--without stress` is not a quantity: expected one of pressure, effective_stress, displacement, \
-                    settlement, load_factor";
-        assert_eq!(of(&["settlement", "stress"]), Err(told.to_owned()));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The files to score: their mapping, and their runs with numbers of cells.
 
-use crate::case::{Case, Quantity};
+use crate::case::Case;
 use crate::cli::commands::score::Arguments;
 use crate::cli::exit::Ended;
 use crate::cli::output::say;
@@ -18,17 +18,12 @@ use std::path::Path;
 
 /// Reads the files of the command line, which may lack some quantities: their mapping, and their runs. `requested` are
 /// time factors.
-pub fn read(
-    arguments: &Arguments,
-    without: &[Quantity],
-    case: &Case,
-    requested: &[f64],
-) -> anyhow::Result<(Mapping, Vec<Run>)> {
+pub fn read(arguments: &Arguments, case: &Case, requested: &[f64]) -> anyhow::Result<(Mapping, Vec<Run>)> {
     let body = SolvedBody::of(case);
     let given = files_of(&arguments.results)?;
     let is_tables = are_tables(&given)?;
     let mut mapping = mapping_of(arguments, Axes::of(case.scene), is_tables)?;
-    mapping.let_lack(without);
+    mapping.let_lack(&arguments.without);
     let steps = arguments.set_time_step.as_ref().map(|typed| times("--set-time-step", typed));
     let steps = steps.transpose()?.unwrap_or_default();
     if let Some(step) = steps.iter().find(|step| !(step.is_finite() && **step > 0.0)) {
