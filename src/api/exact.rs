@@ -2,7 +2,8 @@
 
 use crate::api::error::ApiError;
 use crate::api::scene_of;
-use crate::study::overrides::{Asked, Assignments};
+use crate::study::asked::Asked;
+use crate::study::overrides::Assignments;
 use oedometer_exact::row::Axis;
 use oedometer_exact::{Accuracy, ColumnParameters, ExactError, FieldValues, Reference, ReferenceKind};
 

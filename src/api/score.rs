@@ -12,7 +12,8 @@ use crate::import::run::Run;
 use crate::import::{SampledState, states_of};
 use crate::score::Score;
 use crate::score::results::{Comparison, Results};
-use crate::study::overrides::{Asked, Assignments, Outputs};
+use crate::study::asked::Asked;
+use crate::study::overrides::{Assignments, Outputs};
 use oedometer_formats::ImportError;
 use std::path::{Path, PathBuf};
 

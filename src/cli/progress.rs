@@ -17,16 +17,9 @@ pub struct StudyBar(ProgressBar);
 impl StudyBar {
     /// A bar with a name, hidden if standard error is not a terminal.
     pub fn new(name: &str) -> Self {
-        let bar = ProgressBar::new(0);
-        if !std::io::stderr().is_terminal() {
-            bar.set_draw_target(ProgressDrawTarget::hidden());
-        }
         // Name and message are cut on a narrow terminal: a line that wraps would be drawn again below.
-        let style =
-            ProgressStyle::with_template("{prefix:<24!} [{bar:16}] {percent:>3} %, {eta} left, {wide_msg}");
-        if let Ok(style) = style {
-            bar.set_style(style.progress_chars("=> "));
-        }
+        let template = "{prefix:<24!} [{bar:16}] {percent:>3} %, {eta} left, {wide_msg}";
+        let bar = at_terminal(ProgressBar::new(0), template);
         bar.set_prefix(name.to_owned());
         Self(bar)
     }
@@ -64,19 +57,24 @@ impl StudyBar {
     }
 }
 
+/// A bar with a template, drawn at a terminal alone.
+fn at_terminal(bar: ProgressBar, template: &str) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+    }
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar
+}
+
 /// The case that is being solved, with the time it has taken: from a second on, on terminals.
 pub struct RunningCase(ProgressBar);
 
 impl RunningCase {
     /// A line that is not yet drawn.
     pub fn new() -> Self {
-        let bar = ProgressBar::new_spinner();
-        if !std::io::stderr().is_terminal() {
-            bar.set_draw_target(ProgressDrawTarget::hidden());
-        }
-        if let Ok(style) = ProgressStyle::with_template("{prefix}{wide_msg} {elapsed}") {
-            bar.set_style(style);
-        }
+        let bar = at_terminal(ProgressBar::new_spinner(), "{prefix}{wide_msg} {elapsed}");
         bar.enable_steady_tick(SHOWN_AFTER);
         Self(bar)
     }

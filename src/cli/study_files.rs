@@ -125,17 +125,11 @@ fn read_stream(path: &Path) -> std::io::Result<String> {
     Ok(text)
 }
 
-/// Reads and checks study files; what is odd about them goes to standard error.
-pub fn load(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
-    let studies = checked(paths)?;
-    studies.iter().for_each(tell_warnings);
-    Ok(studies)
-}
-
-/// The same after a run: warnings about a study with results in a folder were printed then.
-pub fn load_after_run(paths: &[PathBuf], results: &Path) -> anyhow::Result<Vec<Study>> {
-    let studies = checked(paths)?;
-    studies.iter().filter(|study| !results.join(&study.name).is_dir()).for_each(tell_warnings);
+/// Reads and checks study files; what is odd about them goes to standard error, but of a study with results in a folder, whose
+/// run said it.
+pub fn load(paths: &[PathBuf], results: Option<&Path>) -> anyhow::Result<Vec<Study>> {
+    let studies = read_all(paths)?.iter().map(checked).collect::<anyhow::Result<Vec<Study>>>()?;
+    tell_what_is_new(&studies, results);
     Ok(studies)
 }
 
@@ -145,7 +139,7 @@ pub fn load_after_run(paths: &[PathBuf], results: &Path) -> anyhow::Result<Vec<S
 /// Where none can run.
 pub fn load_sound(paths: &[PathBuf], results: &Path) -> anyhow::Result<(Vec<Study>, Vec<anyhow::Error>)> {
     let (mut studies, mut refused) = (Vec::new(), Vec::new());
-    for study in read_each(paths).into_iter().map(|source| checked_source(&source?)) {
+    for study in read_each(paths).into_iter().map(|source| checked(&source?)) {
         match study {
             Ok(study) => studies.push(study),
             Err(error) => refused.push(error),
@@ -154,17 +148,17 @@ pub fn load_sound(paths: &[PathBuf], results: &Path) -> anyhow::Result<(Vec<Stud
     if studies.is_empty() && !refused.is_empty() {
         return Err(refused.remove(0));
     }
-    studies.iter().filter(|study| !results.join(&study.name).is_dir()).for_each(tell_warnings);
+    tell_what_is_new(&studies, Some(results));
     Ok((studies, refused))
 }
 
-/// Studies that can run, with the mappings of their solvers.
-fn checked(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
-    read_all(paths)?.iter().map(checked_source).collect()
+fn tell_what_is_new(studies: &[Study], results: Option<&Path>) {
+    let is_new = |study: &&Study| results.is_none_or(|results| !results.join(&study.name).is_dir());
+    studies.iter().filter(is_new).for_each(tell_warnings);
 }
 
 /// A study that can run, with the mappings of its solvers.
-fn checked_source(source: &StudySource) -> anyhow::Result<Study> {
+fn checked(source: &StudySource) -> anyhow::Result<Study> {
     let study = Study::check_for(source, Purpose::Solving)?;
     for solver in &study.solvers {
         mapping_of(solver, Axes::of(study.scene)).map_err(|error| Ended::usage(error.to_string()))?;

@@ -73,11 +73,11 @@ fn row(record: &Record) -> Option<Vec<Cell>> {
         Cell::Code(record.case.label()),
         Cell::Verdict(mood, record.status.name()),
         about.made_by().replace('`', "").into(),
-        Cell::of(wall.map(|wall| wall.minimum), Cell::Seconds, "not run"),
-        Cell::of(wall.map(|wall| wall.median), Cell::Seconds, "not run"),
-        Cell::of(median(|sample| sample.cpu_seconds), Cell::Seconds, not_told),
+        Cell::of(wall.map(|wall| wall.minimum), Cell::Measured, "not run"),
+        Cell::of(wall.map(|wall| wall.median), Cell::Measured, "not run"),
+        Cell::of(median(|sample| sample.cpu_seconds), Cell::Measured, not_told),
         Cell::of(memory.map(|memory| memory.maximum), Cell::Number, not_told),
-        Cell::of(median(|sample| sample.own_seconds), Cell::Seconds, "the solver does not report it"),
+        Cell::of(median(|sample| sample.own_seconds), Cell::Measured, "the solver does not report it"),
         Cell::of(about.repeats_differ_by, Cell::Error, "run once"),
     ])
 }

@@ -168,17 +168,23 @@ pub struct WithinFinding {
     /// Method, or name of another solver.
     pub method: String,
     /// Integrator; empty where another program solved.
+    #[serde(skip)]
     pub integrator: &'static str,
     /// Cells over the height.
     pub cells: usize,
     /// Points in a cell, and whether there are runs of the same method and integrator with others.
+    #[serde(skip)]
     pub points_per_cell: usize,
+    #[serde(skip)]
     pub has_other_points: bool,
     /// Largest step of the run with the largest error, s; 0 where another program solved.
+    #[serde(skip)]
     pub largest_step: f64,
     /// Whether no run of the same method on the same mesh took larger steps: the limit may be larger.
+    #[serde(skip)]
     pub is_longest_tried: bool,
     /// Whether a finer mesh stays within the bound too, in every problem.
+    #[serde(skip)]
     pub is_confirmed: bool,
     /// Largest error.
     pub error: f64,
@@ -188,8 +194,10 @@ pub struct WithinFinding {
     /// Time of that output, s.
     pub seconds: f64,
     /// Counted work of the run with the largest error, s.
+    #[serde(skip)]
     pub cost: f64,
     /// Hash of that run's case.
+    #[serde(skip)]
     pub case: String,
 }
 

@@ -14,7 +14,7 @@ use crate::score::completeness::{Finding, Lack, Whole, interior_zeros, missing_t
 use crate::score::diagnosis::{SEVERAL_RUNS, diagnosis};
 use crate::score::score_series::{ScoredSeries, TimeGroups, series_of, time_factors};
 use crate::score::{Score, score};
-use crate::study::overrides::Asked;
+use crate::study::asked::Asked;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::ReferenceKind;

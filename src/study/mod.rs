@@ -1,5 +1,7 @@
-//! Studies: as typed (`file`, `inputs`, `reading`), as planned (`check`), and as judged (`expectation`).
+//! Studies: as typed (`file`, `inputs`, `reading`), as planned (`check`), as judged (`expectation`), and as typed at the command line
+//! (`overrides`, `asked`).
 
+pub mod asked;
 pub mod check;
 pub mod expectation;
 pub mod file;

@@ -264,11 +264,11 @@ fn times_of_an_attached_run_are_the_least_and_the_median_and_the_processor_s_own
     }
     let table = outside_runs::table(std::slice::from_ref(&record));
     for (header, cell) in [
-        ("wall, least", Cell::Seconds(2.0)),
-        ("wall, median", Cell::Seconds(3.0)),
-        ("processor", Cell::Seconds(2.5)),
+        ("wall, least", Cell::Measured(2.0)),
+        ("wall, median", Cell::Measured(3.0)),
+        ("processor", Cell::Measured(2.5)),
         ("memory", Cell::Number(7.5)),
-        ("by its own account", Cell::Seconds(6.5)),
+        ("by its own account", Cell::Measured(6.5)),
     ] {
         assert_eq!(*under(&table, 0, header), cell, "{header}");
     }

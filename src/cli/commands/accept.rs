@@ -53,7 +53,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     refuse_without_origin()?;
     let reason = arguments.reason.trim();
     let chosen = arguments.studies.chosen()?;
-    let mut studies = with_golden(load(&chosen)?, !arguments.studies.names_none())?;
+    let mut studies = with_golden(load(&chosen, None)?, !arguments.studies.names_none())?;
     arguments.trust.mark_all(&mut studies, &chosen)?;
     let folder_of = |study: &str| golden_folder(arguments.golden.as_deref(), study, &chosen);
     let older = studies.iter().map(|study| older_of(&folder_of(&study.name), &study.name));
@@ -74,8 +74,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         accepted.push(with_spread(golden, &others)?);
     }
     for (golden, older) in accepted.into_iter().zip(older) {
-        let folder = folder_of(&golden.study);
-        keep(golden, older.as_ref(), &folder)?;
+        // Values that agree with what is there stay as they are.
+        let golden = if let Some(older) = &older { golden.keeping(older) } else { golden };
+        let path = golden.write(&folder_of(&golden.study))?;
+        say!("{}: {} values in {}", golden.study, golden.values.len(), path.display());
     }
     Ok(Exit::Pass)
 }
@@ -203,17 +205,6 @@ fn with_lost_orders(reason: &str, lost: &[OrderChange]) -> String {
     let reason = format!("{reason} (orders lost: {}{more})", named.join("; "));
     say!("the reason of this acceptance is: {reason}");
     reason
-}
-
-/// Writes golden values; those that agree with what is there stay as they are.
-fn keep(golden: GoldenFile, older: Option<&GoldenFile>, folder: &Path) -> anyhow::Result<()> {
-    let golden = match older {
-        Some(older) => golden.keeping(older),
-        None => golden,
-    };
-    let path = golden.write(folder)?;
-    say!("{}: {} values in {}", golden.study, golden.values.len(), path.display());
-    Ok(())
 }
 
 #[cfg(test)]

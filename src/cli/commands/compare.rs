@@ -90,7 +90,7 @@ fn states_of_commands(commands: [&str; 2], arguments: &Arguments) -> anyhow::Res
         ));
     };
     let named = [PathBuf::from(named)];
-    let study = load(&named)?;
+    let study = load(&named, None)?;
     let [before, after] = commands.map(|command| with_command(&study[0], command).map_err(Ended::usage));
     let mut studies = [before?, after?];
     arguments.trust.mark_all(&mut studies, &named)?;

@@ -9,7 +9,7 @@ use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, json_of, print_data, print_tables, say};
 use crate::cli::place::DEFAULT_RESULTS;
 use crate::cli::place::{StudyArguments, chosen_as, golden_of};
-use crate::cli::study_files::load_after_run;
+use crate::cli::study_files::load;
 use crate::golden::GoldenError;
 use crate::judge::explanation::explain;
 use crate::record::Record;
@@ -43,7 +43,7 @@ pub struct Arguments {
 /// Finds the case, solves it if its record is missing, and explains it.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let chosen = arguments.studies.chosen()?;
-    let studies = load_after_run(&chosen, &arguments.records)?;
+    let studies = load(&chosen, Some(&arguments.records))?;
     let (description, focus) = match arguments.case.split_once(" | ") {
         Some((label, measure)) => (label, Some(measure)),
         None => (arguments.case.as_str(), None),

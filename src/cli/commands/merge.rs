@@ -48,7 +48,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         let why = "the folders contain no results of a study of this project or of a built-in one";
         return Err(Ended::with(Exit::NothingSelected, why));
     }
-    let studies = load(&files)?;
+    let studies = load(&files, None)?;
     // Every record is looked at before any is written.
     let origins = studies.iter().map(|study| origins_of(study, &folders, arguments));
     let origins = origins.collect::<anyhow::Result<Vec<Origins>>>()?;

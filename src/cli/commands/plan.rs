@@ -74,7 +74,7 @@ enum PlanFormat {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     // Every file is checked before anything is printed.
     let chosen = arguments.studies.chosen()?;
-    let studies = load(&chosen)?;
+    let studies = load(&chosen, None)?;
     let tier = arguments.tier;
     if let Some(folder) = arguments.missing.as_ref().filter(|folder| !folder.is_dir()) {
         return Err(Ended::usage(format!("there is no results folder {}", folder.display())));

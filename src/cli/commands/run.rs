@@ -70,7 +70,7 @@ pub enum Engine {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     // Every file is judged before any work begins.
     let chosen = arguments.studies.chosen()?;
-    let mut studies = load(&chosen)?;
+    let mut studies = load(&chosen, None)?;
     if arguments.engine == Some(Engine::Slurm) {
         arguments.trust.mark_all(&mut studies, &chosen)?;
         return slurm::run(

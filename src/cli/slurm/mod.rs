@@ -62,7 +62,6 @@ pub struct ClusterArguments {
 pub struct Campaign<'a> {
     studies: Vec<(&'a Study, Vec<&'a Case>)>,
     list: JobList,
-    results: PathBuf,
     name: String,
 }
 
@@ -174,12 +173,13 @@ impl<'a> Campaign<'a> {
             [(study, _)] => study.name.clone(),
             several => count_of(several.len(), "study", "studies").replace(' ', "-"),
         };
-        Ok(Self { studies, list, results: results.to_owned(), name })
+        Ok(Self { studies, list, name })
     }
 
     fn missing(&self) -> Vec<(&'a Study, Vec<&'a Case>)> {
-        let of_study =
-            |(study, cases): &(&'a Study, Vec<&'a Case>)| (*study, missing_of(study, cases, &self.results));
+        let of_study = |(study, cases): &(&'a Study, Vec<&'a Case>)| {
+            (*study, missing_of(study, cases, &self.list.results))
+        };
         self.studies.iter().map(of_study).collect()
     }
 
@@ -215,7 +215,7 @@ impl<'a> Campaign<'a> {
     /// The end of a campaign without holes: the table, written here where the merge of the cluster did not.
     fn merged(&self) -> anyhow::Result<Exit> {
         let is_there = |(study, _): &(&Study, Vec<&Case>)| {
-            let folder = self.results.join(&study.name);
+            let folder = self.list.results.join(&study.name);
             ["csv", "csv.gz"].iter().any(|ending| folder.join(format!("{}.{ending}", study.name)).is_file())
         };
         if !self.studies.iter().all(is_there) {
@@ -226,7 +226,7 @@ impl<'a> Campaign<'a> {
         }
         let mut unforeseen = 0;
         for (study, cases) in &self.studies {
-            let store = RecordStore::new(&self.results, &study.name);
+            let store = RecordStore::new(&self.list.results, &study.name);
             let failed: Vec<Record> = cases.iter().filter_map(|case| store.kept(case)).collect();
             let failed: Vec<Record> =
                 failed.into_iter().filter(|record| record.status != Status::Ok).collect();
@@ -244,9 +244,9 @@ impl<'a> Campaign<'a> {
             self.name,
             count_of(missing, "case is", "cases are"),
             count_of(usize::try_from(attempts).unwrap_or(usize::MAX), "submission", "submissions"),
-            self.results.join(FOLDER).join("logs").display(),
+            self.list.results.join(FOLDER).join("logs").display(),
             named.join(" "),
-            self.results.display()
+            self.list.results.display()
         );
         Exit::IncompleteMerge
     }

@@ -99,8 +99,6 @@ pub enum Cell {
     Percent(f64),
     /// A share that someone set, as a percentage without more digits than it has: `0.1 %`.
     Bound(f64),
-    /// A time.
-    Seconds(f64),
     /// A quantity as it is given: `0.25`.
     Number(f64),
     /// A quantity that was measured, or a ratio of such, in the form of its own size: `1.00`, `2.40e-13`.
@@ -236,7 +234,6 @@ impl Cell {
             | Self::Order(v)
             | Self::Percent(v)
             | Self::Bound(v)
-            | Self::Seconds(v)
             | Self::Number(v)
             | Self::Measured(v) => Some(*v),
             Self::Count(n) => Some(*n as f64),
@@ -257,7 +254,6 @@ impl Cell {
             Self::Count(n) => number::count(*n),
             Self::Percent(v) => number::percent(*v),
             Self::Bound(v) => number::bound(*v),
-            Self::Seconds(v) => number::seconds(*v),
             Self::Number(v) => number::rounded(*v),
             Self::Measured(v) => number::significant(*v, 3),
             Self::Verdict(mood, text) => format!("{} {text}", mood.mark()),

@@ -23,7 +23,7 @@ fn sample() -> Table {
             Cell::Order(1.98),
             Cell::Count(81_750),
             Cell::Percent(-0.012),
-            Cell::Seconds(0.0123),
+            Cell::Measured(0.0123),
             Cell::Verdict(Mood::Pass, "asymptotic".into()),
         ],
         vec![
@@ -43,7 +43,7 @@ fn sample() -> Table {
             Cell::Missing(String::new()),
             Cell::Count(0),
             Cell::Percent(0.0),
-            Cell::Seconds(3600.0),
+            Cell::Measured(3600.0),
             Cell::Verdict(Mood::Note, "floor-limited".into()),
         ],
     ];

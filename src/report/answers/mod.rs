@@ -116,13 +116,6 @@ pub(crate) fn program_of(origin: &Provenance) -> String {
 /// Rows of a table on the answer page.
 const MOST_ROWS: usize = 10;
 
-/// The first rows of a table, with a line on where the others are.
-fn first_rows(mut table: Table, elsewhere: &str) -> Table {
-    let more = table.rows.len().saturating_sub(MOST_ROWS);
-    table.rows.truncate(MOST_ROWS);
-    if more > 0 { table.note(format!("{more} more: {elsewhere}")) } else { table }
-}
-
 /// The questions of the page behind the choice of a method, in their order; what changed stands before the first of the last.
 const ASKED: [&str; 8] = ["cost", "peers", "paper", CHANGES, "locking", "convergence", "time-step", "audit"];
 
@@ -197,8 +190,7 @@ pub fn changes_section(changes: &[StudyComparison]) -> Result<Section, RenderErr
     let sentence = sentence::filled(include_str!("changes.md"), &Changes { changed: changes.len(), worse })?;
     let tables = comparison_tables(changes, ["the golden values", "this report"]);
     let shown = tables.into_iter().filter(|_| !changes.is_empty());
-    let shown = shown
-        .map(|table| Block::Table(first_rows(table, "listed by `oedometer compare` and `oedometer check`")));
+    let shown = shown.map(|table| Block::Table(table.shown(MOST_ROWS)));
     let blocks = std::iter::once(Block::Paragraph(sentence)).chain(shown).collect();
     Ok(Section::new("What changed?", CHANGES, blocks))
 }
@@ -211,7 +203,6 @@ mod tests {
     use crate::golden::GoldenFile;
     use crate::history::state::StudyState;
     use crate::record::Record;
-    use crate::render::table::{Cell, columns};
     use crate::study::check::Study;
 
     #[test]
@@ -220,15 +211,6 @@ mod tests {
         assert!(making.words(&[]).contains("rendered in 1.2 s from 0 records"), "{}", making.words(&[]));
         let run = Making { cases_run: 3, ..making };
         assert!(run.words(&[]).contains("with 3 of 0 cases run"));
-    }
-
-    #[test]
-    fn a_table_of_the_answers_ends_after_ten_rows_and_says_where_the_others_are() {
-        let table =
-            |rows: usize| Table::of("", columns("a"), (0..rows).map(|row| vec![Cell::Count(row as u64)]));
-        let cut = first_rows(table(12), "in the studies");
-        assert_eq!((cut.rows.len(), cut.notes.as_slice()), (10, &["2 more: in the studies".to_owned()][..]));
-        assert_eq!(first_rows(table(10), "in the studies"), table(10));
     }
 
     #[test]

@@ -10,7 +10,7 @@ use crate::cli::place::DEFAULT_RESULTS;
 use crate::cli::place::{StudyArguments, chosen_as, golden_of};
 use crate::cli::running::refuse_unfinished;
 use crate::cli::running::{jobs_of, run_and_store};
-use crate::cli::study_files::load_after_run;
+use crate::cli::study_files::load;
 use crate::cli::study_files::tell_of_passed_over;
 use crate::cli::trust::{self, TrustArguments};
 use crate::golden::GoldenFile;
@@ -75,7 +75,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let start = Instant::now();
     let chosen = arguments.studies.chosen()?;
-    let mut studies = load_after_run(&chosen, &arguments.records)?;
+    let mut studies = load(&chosen, Some(&arguments.records))?;
     let reports = if arguments.from_records {
         kept(&studies, arguments)?
     } else {
