@@ -1,7 +1,7 @@
 //! Results of other programs that a run takes over from an earlier one, and by what these are known.
 
 use crate::record::Record;
-use oedometer_wording::count_of;
+use oedometer_wording::{count_of, first_few};
 
 /// Cases of a sentence before the rest is only counted.
 const MOST_CASES: usize = 12;
@@ -49,18 +49,14 @@ impl TakenOver {
 
     fn sentence(&self, cases: &[&str]) -> String {
         let count = count_of(cases.len(), "result", "results");
-        let more = cases.len().saturating_sub(MOST_CASES);
-        let more = if more == 0 { String::new() } else { format!(" and {more} more") };
-        let cases = cases.iter().take(MOST_CASES).copied().collect::<Vec<_>>().join(", ");
+        let cases = cases.iter().map(|case| (*case).to_owned()).collect();
+        let cases = first_few(cases, MOST_CASES).join(", ");
         let proof = if self.is_proven {
             "whose version and named files are unchanged"
         } else {
             "and nothing proves that its program is unchanged"
         };
-        format!(
-            "`{}` was not run: {count} reused ({cases}{more}), made by {}, {proof}",
-            self.solver, self.made_by
-        )
+        format!("`{}` was not run: {count} reused ({cases}), made by {}, {proof}", self.solver, self.made_by)
     }
 }
 
@@ -90,7 +86,7 @@ mod tests {
         let many: Vec<TakenOver> = (0..14).map(|cells| of("a", cells, "v1", true)).collect();
         let told = TakenOver::sentences(&many).remove(0);
         assert!(
-            told.contains("14 results reused (a cells=0,") && told.contains("a cells=11 and 2 more)"),
+            told.contains("14 results reused (a cells=0,") && told.contains("a cells=11, and 2 more)"),
             "{told}"
         );
     }

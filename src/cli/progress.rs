@@ -6,6 +6,7 @@ use crate::campaign::runner::{LongestCase, Progress};
 use crate::case::Task;
 use crate::case::work_estimate::estimated_seconds;
 use crate::cli::output::say;
+use crate::study::check::Study;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use oedometer_wording::{count_of, duration};
 use std::io::IsTerminal;
@@ -15,12 +16,15 @@ use std::time::Duration;
 pub struct StudyBar(ProgressBar);
 
 impl StudyBar {
-    /// A bar with a name, hidden if standard error is not a terminal.
-    pub fn new(name: &str) -> Self {
+    /// A bar with the study's name or the number of studies, hidden if standard error is not a terminal.
+    pub fn of(studies: &[Study]) -> Self {
         // Name and message are cut on a narrow terminal: a line that wraps would be drawn again below.
         let template = "{prefix:<24!} [{bar:16}] {percent:>3} %, {eta} left, {wide_msg}";
         let bar = at_terminal(ProgressBar::new(0), template);
-        bar.set_prefix(name.to_owned());
+        bar.set_prefix(match studies {
+            [study] => study.name.clone(),
+            _ => count_of(studies.len(), "study", "studies"),
+        });
         Self(bar)
     }
 

@@ -51,11 +51,7 @@ pub fn run_and_store(
         store: Some(store),
         is_kept: true,
     });
-    let name = match studies {
-        [study] => study.name.clone(),
-        _ => count_of(studies.len(), "study", "studies"),
-    };
-    let bar = StudyBar::new(&name);
+    let bar = StudyBar::of(studies);
     let tell = |progress| bar.tell(progress);
     let mut reports = run_studies(&kept.collect::<Vec<_>>(), &options, &tell);
     if let Some(error) = reports.iter_mut().find_map(first_that_ends_all) {
@@ -114,11 +110,7 @@ pub fn run_ci_tier(
     records: Option<&Path>,
     thin: &(dyn Fn(&Study, &mut Record) + Sync),
 ) -> anyhow::Result<Vec<RunReport>> {
-    let name = match studies {
-        [study] => study.name.as_str(),
-        _ => "check",
-    };
-    let bar = StudyBar::new(name);
+    let bar = StudyBar::of(studies);
     let store_of = |study: &Study| Some(RecordStore::new(records?, &study.name));
     let stores: Vec<Option<RecordStore>> = studies.iter().map(store_of).collect();
     let selected: Vec<Selected<'_>> = (studies.iter().zip(&stores))
@@ -184,14 +176,9 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
     }
     if report.of_another_program > 0 {
         say!(
-            "{}: {} of another version or of other sources {} run again",
+            "{}: not reused, so run again: {} of another version or of other sources",
             study.name,
-            count_of(report.of_another_program, "record", "records"),
-            if report.of_another_program == 1 {
-                "was not reused; its case was"
-            } else {
-                "were not reused; their cases were"
-            }
+            count_of(report.of_another_program, "record", "records")
         );
     }
     if let Some(differences) = report.origins.differences_from(&Provenance::of_this_program()) {

@@ -26,7 +26,7 @@ use oedometer_convergence::Class;
 use oedometer_exact::ReferenceKind;
 use oedometer_problem::snapshot::Snapshot;
 use oedometer_scenes::column::column_parameters;
-use oedometer_wording::count_of;
+use oedometer_wording::{count_of, first_few};
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 use std::collections::BTreeMap;
 
@@ -275,13 +275,7 @@ impl StudyCheck {
         let (has, their) = if self.other_inputs.len() == 1 { ("has", "its") } else { ("have", "their") };
         let which = match self.input_changes.as_slice() {
             [] => "`git diff` of the study shows which".to_owned(),
-            changes => {
-                let mut told: Vec<String> =
-                    changes.iter().take(MOST_INPUTS).map(InputChange::sentence).collect();
-                let rest = changes.len().saturating_sub(MOST_INPUTS);
-                told.extend((rest > 0).then(|| format!("and {rest} more")));
-                told.join(", ")
-            }
+            changes => first_few(changes.iter().map(InputChange::sentence).collect(), MOST_INPUTS).join(", "),
         };
         Some(format!(
             "{} {has} other inputs than {their} golden values, like `{first}`: {which}",

@@ -5,6 +5,7 @@ use crate::case::{Case, Quantity, Sample};
 use crate::judge::paths::{Path, first_measure, grouped};
 use crate::judge::study_results::StudyResults;
 use crate::questions::finding::{Finding, Place, Question, best};
+use crate::questions::words;
 use crate::record::{Record, Status};
 use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size};
 use crate::render::number;
@@ -54,6 +55,8 @@ struct Audit {
     method: String,
     /// Cells of the finest mesh that all pairings have.
     cells: usize,
+    /// Time factor of the pressures.
+    time_factor: f64,
     /// The printed one first.
     pairings: Vec<Pairing>,
 }
@@ -65,6 +68,8 @@ struct Pairing {
     continuity: &'static str,
     /// Time factor, and settlement over Xie & Leo's less one, on the mesh of the comparison.
     settlement: Vec<(f64, f64)>,
+    /// Cell size, m, and relative L2 error of the pressure at the points.
+    pressure: Vec<(f64, f64)>,
     /// Time factor and largest error of the settlement with its sign; none where an output has none.
     largest: Option<(f64, f64)>,
 }
@@ -96,7 +101,7 @@ fn answer(study: &str, audit: &Audit) -> Finding {
     AUDIT
         .answer([study], &facts)
         .with(Block::Table(table(audit)))
-        .with(Block::Figures(vec![over_time(audit)]))
+        .with(Block::Figures(vec![over_time(audit), over_mesh(audit)]))
 }
 
 impl Audit {
@@ -106,24 +111,29 @@ impl Audit {
         let cells = pairings.iter().filter_map(|one| Some(one.records.last()?.case.cells)).min()?;
         let times = on(first, cells)?.case.time_factors.iter().copied();
         let times: Vec<f64> = times.filter(|time| *time > 0.0).collect();
-        times.first()?;
+        let time_factor = *times.get(times.len().saturating_sub(1) / 2)?;
         let mut pairings: Vec<Pairing> =
-            pairings.iter().map(|pairing| Pairing::new(pairing, cells, &times)).collect();
+            pairings.iter().map(|pairing| Pairing::new(pairing, cells, &times, time_factor)).collect();
         pairings.sort_by_key(|pairing| !pairing.is_printed());
-        Some(Self { method: first.records[0].case.method.to_string(), cells, pairings })
+        Some(Self { method: first.records[0].case.method.to_string(), cells, time_factor, pairings })
     }
 }
 
 impl Pairing {
-    fn new(pairing: &Path<'_>, cells: usize, times: &[f64]) -> Self {
+    fn new(pairing: &Path<'_>, cells: usize, times: &[f64], time_factor: f64) -> Self {
         let (law, continuity) = law_and_continuity(&pairing.records[0].case);
         let settlement: Vec<(f64, f64)> = on(pairing, cells).map_or(Vec::new(), |record| {
-            times.iter().filter_map(|time| Some((*time, settlement_error(record, *time)?))).collect()
+            let error =
+                |time: &f64| Some((*time, error(record, Quantity::Settlement, Sample::Surface, *time)?));
+            times.iter().filter_map(error).collect()
+        });
+        let pressure = pairing.records.iter().filter_map(|record| {
+            Some((record.case.cell_size(), error(record, Quantity::Pressure, Sample::Points, time_factor)?))
         });
         // What has no error at one of the times agrees at every time with nothing.
         let largest = settlement.iter().filter(|_| settlement.len() == times.len());
         let largest = largest.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).copied();
-        Self { law, continuity, largest, settlement }
+        Self { law, continuity, pressure: pressure.collect(), largest, settlement }
     }
 
     fn is_printed(&self) -> bool {
@@ -132,6 +142,11 @@ impl Pairing {
 
     fn agrees(&self) -> bool {
         self.largest.is_some_and(|(_, error)| error.abs() < AGREES)
+    }
+
+    /// Whether the last mesh halves the error of the pressure at least.
+    fn falls(&self) -> bool {
+        matches!(self.pressure.as_slice(), [.., (_, coarse), (_, fine)] if coarse.abs() > 2.0 * fine.abs())
     }
 
     fn name(&self) -> String {
@@ -176,6 +191,26 @@ fn over_time(audit: &Audit) -> Figure {
     Figure::new("audit-settlement", chart, "Zero is Xie & Leo's solution.")
 }
 
+fn over_mesh(audit: &Audit) -> Figure {
+    let points = || audit.pairings.iter().flat_map(|pairing| &pairing.pressure);
+    let mut chart = Chart::new(
+        format!(
+            "The pressure of {} of {} pairings still falls on the last mesh",
+            audit.pairings.iter().filter(|one| one.falls()).count(),
+            audit.pairings.len()
+        ),
+        ChartAxis::log10("cell size h (m)").with_ticks(words::ticks(points().map(|(size, _)| *size))),
+        ChartAxis::log10("relative L_2 error of the pressure at the points (–)"),
+    );
+    chart.size = Size::PANEL;
+    chart.subtitle = Some(format!("{}, T_v = {}", audit.method, audit.time_factor));
+    let series = |pairing: &Pairing| Series::new(pairing.name(), pairing.pressure.clone());
+    chart.series.extend(audit.pairings.iter().map(series));
+    let caption = "With the right equations the error falls with every mesh; with wrong ones it stops at \
+                   the difference between the two theories.";
+    Figure::new("audit-pressure", chart, caption)
+}
+
 fn law_and_continuity(case: &Case) -> (&'static str, &'static str) {
     (case.material.law.name(), case.material.continuity.name())
 }
@@ -185,10 +220,9 @@ fn on<'a>(pairing: &Path<'a>, cells: usize) -> Option<&'a Record> {
     pairing.records.iter().copied().find(|record| record.case.cells == cells)
 }
 
-/// Settlement over Xie & Leo's, less one, of a run at a time.
-fn settlement_error(record: &Record, time: f64) -> Option<f64> {
-    let (surface, reference) = (Sample::Surface, ReferenceKind::XieLeo.name());
-    Some(first_measure(Quantity::Settlement, surface, reference, time).error(record)?.value)
+/// The error of a quantity against Xie & Leo's solution at a time, with its sign if it has one.
+fn error(record: &Record, quantity: Quantity, sample: Sample, time: f64) -> Option<f64> {
+    Some(first_measure(quantity, sample, ReferenceKind::XieLeo.name(), time).error(record)?.value)
 }
 
 /// Pairings of law and continuity from coarse to fine, of the method that has most of them.
@@ -291,11 +325,13 @@ mod tests {
     }
 
     #[test]
-    fn pairings_are_compared_on_the_finest_mesh_of_all() {
+    fn pairings_are_compared_on_the_finest_mesh_of_all_and_at_the_middle_time() {
         let (study, mut records) = solved("s", STUDY);
         for record in &mut records {
+            let cells = record.case.cells as f64;
             for row in record.errors.iter_mut().filter(|row| row.reference == "xie-leo") {
-                row.value = -row.time_factor;
+                let is_settlement = row.quantity == Quantity::Settlement;
+                row.value = if is_settlement { -row.time_factor } else { row.time_factor / (cells * cells) };
             }
             if law_and_continuity(&record.case) == PRINTED && record.case.cells == 8 {
                 record.status = failed_at(1);
@@ -303,10 +339,11 @@ mod tests {
         }
         let results = [StudyResults::new(&study, &records, Tier::Full)];
         let audit = Audit::new(&pairings(&results[0])).expect("an audit");
-        assert_eq!((audit.cells, audit.method.as_str()), (4, "TL-GIMP-SRI-patch"));
+        assert_eq!((audit.cells, audit.time_factor, audit.method.as_str()), (4, 0.5, "TL-GIMP-SRI-patch"));
         let [printed, wanted, ..] = &audit.pairings[..] else { panic!("{audit:?}") };
-        assert!(printed.is_printed());
+        assert_eq!((printed.is_printed(), printed.pressure.len()), (true, 2), "its finest run failed");
         assert_eq!(wanted.settlement, TIMES.map(|time| (time, -time)));
+        assert_eq!(wanted.pressure, [2.0, 4.0, 8.0].map(|cells| (1.0 / cells, 0.5 / (cells * cells))));
         let found = ask(&results).expect("sound").expect("an audit");
         assert_eq!(
             found.sentence().expect("a sentence"),
@@ -320,29 +357,33 @@ mod tests {
 
     #[test]
     fn every_pairing_is_drawn_and_told() {
-        let pairing = |law, continuity, error: Option<f64>| Pairing {
+        let pairing = |law, continuity, error: Option<f64>, pressure: &[(f64, f64)]| Pairing {
             law,
             continuity,
             settlement: vec![(0.1, -0.1)],
+            pressure: pressure.to_vec(),
             largest: error.map(|error| (0.5, error)),
         };
         let audit = Audit {
             method: "M".to_owned(),
             cells: 4,
+            time_factor: 0.5,
             pairings: vec![
-                pairing(PRINTED.0, PRINTED.1, Some(0.079)),
-                pairing("flat", "c", None),
-                pairing("right", "c", Some(-0.004)),
+                pairing(PRINTED.0, PRINTED.1, Some(0.079), &[(0.5, 1.0), (0.25, 0.001)]),
+                pairing("flat", "c", None, &[(0.5, 1.0), (0.25, 0.5), (0.125, 0.25)]),
+                pairing("right", "c", Some(-0.004), &[(0.5, 1.0), (0.25, 0.25), (0.125, 0.0625)]),
             ],
         };
-        let time = over_time(&audit).chart;
-        let names: Vec<&str> = time.series.iter().map(|series| series.name.as_str()).collect();
+        let [time, mesh] = [over_time(&audit), over_mesh(&audit)].map(|figure| figure.chart);
+        let names: Vec<&str> = mesh.series.iter().map(|series| series.name.as_str()).collect();
         assert_eq!(
             names,
             ["porosity-dependent, constant-porosity-gradient (as printed)", "flat, c", "right, c"]
         );
         assert_eq!(time.series[1].points, [(0.1, -0.1)]);
-        assert_eq!(time.subtitle.as_deref(), Some("M, 4 cells"));
+        assert_eq!(mesh.series[2].points, audit.pairings[2].pressure);
+        let subtitles = [&time, &mesh].map(|chart| chart.subtitle.clone().unwrap_or_default());
+        assert_eq!(subtitles, ["M, 4 cells", "M, T_v = 0.5"]);
         assert_eq!(time.rules, [Rule { at: 0.0, label: "Xie & Leo".to_owned() }]);
         let told: Vec<Vec<String>> =
             table(&audit).rows.iter().map(|row| row[1..].iter().map(Cell::show).collect()).collect();

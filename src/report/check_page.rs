@@ -15,7 +15,7 @@ use crate::render::page::{self, Block};
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::report::sections;
 use crate::report::tables::golden_changes::sentence;
-use oedometer_wording::count_of;
+use oedometer_wording::{count_of, first_few};
 use std::fmt::Write as _;
 
 /// How a terminal shows a check.
@@ -121,12 +121,8 @@ fn mood_of(check: &StudyCheck) -> Mood {
 }
 
 /// Points of a list, the rest counted unless the whole is wanted.
-fn list(mut points: Vec<String>, is_whole: bool) -> Option<Block> {
-    let rest = points.len().saturating_sub(MOST);
-    if rest > 0 && !is_whole {
-        points.truncate(MOST);
-        points.push(format!("and {rest} more"));
-    }
+fn list(points: Vec<String>, is_whole: bool) -> Option<Block> {
+    let points = if is_whole { points } else { first_few(points, MOST) };
     (!points.is_empty()).then_some(Block::List(points))
 }
 

@@ -6,7 +6,7 @@ use crate::history::timeline::{Step, Timeline};
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
 use crate::report::tables::golden_changes::summary;
-use oedometer_wording::count_of;
+use oedometer_wording::{count_of, first_few};
 use std::collections::{BTreeMap, BTreeSet};
 
 fn trend(trend: Trend) -> Cell {
@@ -179,12 +179,9 @@ const MOST_CASES: usize = 3;
 
 /// Cases by their labels, or a dash.
 fn cases(all: &[String]) -> Cell {
-    let more = all.len().saturating_sub(MOST_CASES);
-    let named = all.iter().take(MOST_CASES).map(String::as_str).collect::<Vec<_>>().join(", ");
-    match (all.is_empty(), more) {
-        (true, _) => Cell::missing("no case"),
-        (false, 0) => Cell::Code(named),
-        (false, more) => Cell::Code(format!("{named} and {more} more")),
+    match all {
+        [] => Cell::missing("no case"),
+        _ => Cell::Code(first_few(all.to_vec(), MOST_CASES).join(", ")),
     }
 }
 

@@ -9,6 +9,7 @@ use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::table::Mood;
 use crate::report::check_page::{judgements_table, objection};
 use crate::report::sections::section;
+use oedometer_wording::first_few;
 use std::fmt::Write;
 
 /// The page of a study from its answers at [`Place::Study`].
@@ -65,12 +66,8 @@ fn verdict(one: &StudyResults<'_>) -> Callout {
         _ => write!(text, "{} of {judged} expectations are met.", check.met()),
     };
     let objections = check.objections();
-    for one in objections.iter().take(MOST_REASONS) {
-        let _ = write!(text, "\n\n{}", objection(one));
-    }
-    let more = objections.len().saturating_sub(MOST_REASONS);
-    if more > 0 {
-        let _ = write!(text, "\n\nAnd {more} more.");
+    for sentence in first_few(objections.iter().map(objection).collect(), MOST_REASONS) {
+        let _ = write!(text, "\n\n{sentence}");
     }
     (if objections.is_empty() { mood_of(one) } else { Mood::Fail }, text)
 }

@@ -8,7 +8,7 @@ mod numbers;
 mod times;
 
 pub use choices::is_default;
-pub use numbers::{count_of, order, orders, rounded, typed};
+pub use numbers::{count_of, first_few, order, orders, rounded, typed};
 pub use times::{DAY, HOUR, MINUTE, MONTH, WEEK, YEAR, clock_time, duration};
 #[doc(hidden)]
 pub use {schemars, serde};

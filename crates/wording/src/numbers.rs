@@ -33,6 +33,16 @@ pub fn count_of(count: usize, singular: &str, plural: &str) -> String {
     format!("{count} {}", if count == 1 { singular } else { plural })
 }
 
+/// The first parts of a list, and how many more there are.
+pub fn first_few(mut parts: Vec<String>, most: usize) -> Vec<String> {
+    let rest = parts.len().saturating_sub(most);
+    if rest > 0 {
+        parts.truncate(most);
+        parts.push(format!("and {rest} more"));
+    }
+    parts
+}
+
 /// An order of convergence with two decimals; -0.00 is written 0.00.
 pub fn order(value: f64) -> String {
     let text = format!("{value:.2}");

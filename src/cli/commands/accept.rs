@@ -21,6 +21,7 @@ use crate::report::check_page::objections_of;
 use crate::report::history_tables::comparison_tables;
 use crate::study::check::Study;
 use crate::study::file::GoldenRule;
+use oedometer_wording::first_few;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -199,10 +200,8 @@ fn with_lost_orders(reason: &str, lost: &[OrderChange]) -> String {
     if lost.is_empty() {
         return reason.to_owned();
     }
-    let named: Vec<String> = lost.iter().take(MOST_LOST).map(OrderChange::sentence).collect();
-    let more = lost.len().saturating_sub(MOST_LOST);
-    let more = if more == 0 { String::new() } else { format!("; and {more} more") };
-    let reason = format!("{reason} (orders lost: {}{more})", named.join("; "));
+    let named = first_few(lost.iter().map(OrderChange::sentence).collect(), MOST_LOST);
+    let reason = format!("{reason} (orders lost: {})", named.join("; "));
     say!("the reason of this acceptance is: {reason}");
     reason
 }

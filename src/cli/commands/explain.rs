@@ -16,6 +16,7 @@ use crate::record::Record;
 use crate::record::store::RecordStore;
 use crate::report::tables::explanation;
 use crate::study::check::Study;
+use oedometer_wording::first_few;
 use std::path::{Path, PathBuf};
 
 /// Cases that a message lists if a description fits several.
@@ -88,13 +89,9 @@ fn the_one<'a>(studies: &'a [Study], description: &str) -> anyhow::Result<(&'a S
             || has_words(&format!("{}/{} {}", study.name, case.label(), case.method))
     };
     // A study may have the name of one of its methods, so the case's own words come first.
-    let mut fitting: Vec<_> = all.iter().filter(is_label).collect();
-    if fitting.is_empty() {
-        fitting = all.iter().filter(has_words_of_case).collect();
-    }
-    if fitting.is_empty() {
-        fitting = all.iter().filter(has_hash_or_words).collect();
-    }
+    let ways: [&dyn Fn(&&(&Study, &Case)) -> bool; 3] = [&is_label, &has_words_of_case, &has_hash_or_words];
+    let mut fitting = ways.iter().map(|fits| all.iter().filter(fits).collect::<Vec<_>>());
+    let fitting = fitting.find(|fitting| !fitting.is_empty()).unwrap_or_default();
     match fitting.as_slice() {
         [] => {
             let whose = if let [study] = studies { format!(" of `{}`", study.name) } else { String::new() };
@@ -103,18 +100,13 @@ fn the_one<'a>(studies: &'a [Study], description: &str) -> anyhow::Result<(&'a S
         }
         [(study, case)] => Ok((study, case)),
         several => {
-            let mut lines: Vec<String> = several
-                .iter()
-                .take(MOST_NAMED)
-                .map(|(study, case)| format!("  {} {}/{}", case.hash(), study.name, case.label()))
-                .collect();
-            if several.len() > MOST_NAMED {
-                lines.push(format!("  and {} more", several.len() - MOST_NAMED));
-            }
+            let name =
+                |(study, case): &&(&Study, &Case)| format!("{} {}/{}", case.hash(), study.name, case.label());
+            let names = first_few(several.iter().map(name).collect(), MOST_NAMED);
             Err(Ended::usage(format!(
-                "`{description}` matches {} cases; give the first digits of a hash:\n{}",
+                "`{description}` matches {} cases; give the first digits of a hash:\n  {}",
                 several.len(),
-                lines.join("\n")
+                names.join("\n  ")
             )))
         }
     }

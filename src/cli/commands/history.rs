@@ -5,6 +5,7 @@ use crate::cli::output::{TableFormat, json_of, print_data, print_tables, say};
 use crate::cli::place::repository_with;
 use crate::history::timeline::timelines;
 use crate::report::history_tables::{timeline_summary, timeline_table};
+use oedometer_wording::first_few;
 use std::path::PathBuf;
 
 /// Files that cannot be read, named before the rest is counted.
@@ -34,11 +35,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     let (lines, notes) = timelines(&repository, &folder, &arguments.studies)
         .map_err(|error| Ended::usage(error.to_string()))?;
-    for note in notes.iter().take(MOST_NOTES) {
+    for note in first_few(notes, MOST_NOTES) {
         say!("{note}");
-    }
-    if notes.len() > MOST_NOTES {
-        say!("{} more files are skipped", notes.len() - MOST_NOTES);
     }
     if lines.is_empty() {
         let what = format!("no commit has golden values of these studies in {folder}/");

@@ -66,16 +66,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 
 /// Prints a method part by part with its sources, or the file of a shipped study.
 fn show(name: &str) -> anyhow::Result<Exit> {
-    if let Some(method) = Method::named(name) {
-        print_data(&in_words(name, &method))?;
-        return Ok(Exit::Pass);
-    }
-    if let Some(study) = shipped_study(name) {
-        print_data(&study.text)?;
-        return Ok(Exit::Pass);
-    }
-    if let Some(scene) = Scene::named(name) {
-        print_data(&scene_in_words(scene))?;
+    let method = Method::named(name).map(|method| in_words(name, &method));
+    let study = || shipped_study(name).map(|study| study.text);
+    let scene = || Scene::named(name).map(scene_in_words);
+    if let Some(text) = method.or_else(study).or_else(scene) {
+        print_data(&text)?;
         return Ok(Exit::Pass);
     }
     let scenes = SCENES.map(|scene| scene.name.to_owned());

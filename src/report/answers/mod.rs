@@ -17,7 +17,7 @@ use crate::race::RaceFindings;
 use crate::record::provenance::{Origins, Provenance};
 use crate::render::RenderError;
 use crate::render::page::{Block, Callout, Page, Section};
-use crate::render::table::{Mood, Table};
+use crate::render::table::Mood;
 use crate::report::history_tables::comparison_tables;
 use crate::report::sections::{links_to, section};
 use oedometer_exact::ExactError;

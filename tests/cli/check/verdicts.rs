@@ -145,7 +145,11 @@ fn a_trade_of_cost_for_accuracy_is_stale_and_a_dearer_run_fails() {
     });
     let told = traded.check(&[]);
     assert_eq!(told.code, 5, "{}", told.out);
-    assert!(differing(&told).iter().any(|row| row.contains("1 value improved")), "{}", told.out);
+    assert!(
+        differing(&told).iter().any(|row| row.contains("1 value fell where others of their case rose")),
+        "{}",
+        told.out
+    );
     assert_words("accuracy_and_cost", &told.out);
     let dearer = Place::golden(STUDY, |golden| steps(golden, 0.5));
     let told = dearer.check(&[]);

@@ -216,7 +216,7 @@ fn what_cannot_be_compared_is_refused_in_sentences() {
     }
     let told = call(at, &["history"]);
     let lines: Vec<&str> = told.err.lines().collect();
-    assert_eq!((lines.len(), lines[3]), (4, "2 more files are skipped"), "{}", told.err);
+    assert_eq!((lines.len(), lines[3]), (4, "and 2 more"), "{}", told.err);
 }
 
 /// A solver in Python, right but for a factor, with its study.

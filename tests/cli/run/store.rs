@@ -281,8 +281,7 @@ fn resuming_runs_cases_of_other_sources_again_and_says_how_many() {
     let told = call(at, &["run", "short.toml", "--resume"]);
     assert_eq!(told.code, 0);
     assert!(told.err.contains("8 cases (5 reused"), "{}", told.err);
-    let sentence =
-        "short: 3 records of another version or of other sources were not reused; their cases were run again";
+    let sentence = "short: not reused, so run again: 3 records of another version or of other sources";
     assert!(told.err.contains(sentence), "{}", told.err);
     assert_eq!(table_without_times(&at.join("out/short/short.csv")), table);
     let told = call(at, &["run", "short.toml", "--resume"]);
