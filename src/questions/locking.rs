@@ -68,8 +68,8 @@ fn answer(study: &str, sweep: &StiffnessSweep) -> Option<Finding> {
 
 /// Whether a method ran at the largest ratio and lost its result at none.
 fn keeps(row: &SweepRow) -> bool {
-    let ran = row.found.last().is_some_and(|_| row.errors(row.found.len() - 1).iter().all(Option::is_some));
-    ran && row.lost_from().is_none() && row.failed_from().is_none()
+    let ran = row.found.last().is_some_and(|errors| errors.iter().all(Option::is_some));
+    ran && row.lost_from().is_none() && row.failed.is_none()
 }
 
 /// The errors of all methods at the smallest and the largest ratio.
@@ -81,7 +81,7 @@ fn table(rows: &[&SweepRow], ratios: &[f64]) -> Table {
         "method | above {limit} % | > displacement, ν = {least} | > ν = {most} | > pressure, ν = {least} | > ν = {most}"
     );
     let cells = rows.iter().map(|row| {
-        let ([u_least, p_least], [u_most, p_most]) = (row.errors(0), row.errors(last));
+        let ([u_least, p_least], [u_most, p_most]) = (row.found[0], row.found[last]);
         let errors = [u_least, u_most, p_least, p_most];
         let errors = errors.map(|error| Cell::of(error, Cell::Error, "no result"));
         [Cell::Code(row.method.to_string()), loss(row, ratios)].into_iter().chain(errors).collect()
@@ -95,10 +95,10 @@ fn table(rows: &[&SweepRow], ratios: &[f64]) -> Table {
 /// What becomes of a result, in a few words.
 fn loss(row: &SweepRow, ratios: &[f64]) -> Cell {
     let at = |place: usize| typed(ratios[place]);
-    match (row.lost_from(), row.failed_from()) {
+    match (row.lost_from(), &row.failed) {
         (Some(place), _) => Cell::Verdict(Mood::Fail, format!("from ν = {}", at(place))),
         (None, Some((place, how))) => {
-            Cell::Verdict(Mood::Fail, format!("failed at ν = {}: {how}", at(place)))
+            Cell::Verdict(Mood::Fail, format!("failed at ν = {}: {how}", at(*place)))
         }
         (None, None) if keeps(row) => Cell::Verdict(Mood::Pass, "never".to_owned()),
         (None, None) => Cell::missing("not run at the largest ratio"),
@@ -106,11 +106,9 @@ fn loss(row: &SweepRow, ratios: &[f64]) -> Cell {
 }
 
 /// What the figure shows: how many methods keep the pressure at every ratio.
-fn title_of(rows: &[&SweepRow], ratios: &[f64]) -> String {
-    let is_kept = |row: &&&SweepRow| {
-        (0..ratios.len()).all(|place| row.errors(place)[1].is_some_and(|error| error < KEPT))
-    };
-    let kept = rows.iter().filter(is_kept).count();
+fn title_of(rows: &[&SweepRow]) -> String {
+    let is_kept = |errors: &[Option<f64>; 2]| errors[1].is_some_and(|error| error < KEPT);
+    let kept = rows.iter().filter(|row| row.found.iter().all(is_kept)).count();
     format!(
         "{kept} of {} methods keep the pressure at the points within {} %",
         rows.len(),
@@ -122,11 +120,11 @@ fn title_of(rows: &[&SweepRow], ratios: &[f64]) -> String {
 fn figure(rows: &[&SweepRow], ratios: &[f64]) -> Figure {
     let ticks = ratios.iter().map(|ratio| (1.0 - 2.0 * ratio, typed(*ratio)));
     let x = ChartAxis::log10("Poisson's ratio ν (–), spaced as 1 − 2ν").inverted().with_labelled_ticks(ticks);
-    let mut chart = Chart::new(title_of(rows, ratios), x, ChartAxis::log10("relative L_2 error (–)"));
+    let mut chart = Chart::new(title_of(rows), x, ChartAxis::log10("relative L_2 error (–)"));
     chart.size = Size::PANEL;
     for row in rows {
-        let point = |(place, ratio): (usize, &f64)| Some((1.0 - 2.0 * ratio, row.errors(place)[1]?));
-        let points = ratios.iter().enumerate().filter_map(point).collect();
+        let point = |(ratio, errors): (&f64, &[Option<f64>; 2])| Some((1.0 - 2.0 * ratio, errors[1]?));
+        let points = ratios.iter().zip(&row.found).filter_map(point).collect();
         chart.series.push(Series::new(row.method.to_string(), points));
     }
     chart.rules.push(Rule { at: KEPT, label: "lost".to_owned() });
@@ -145,7 +143,7 @@ mod tests {
         SweepRow {
             method: SolverName::Own(Method::named(name).expect("a method")),
             found: errors.to_vec(),
-            failed: vec![None; 3],
+            failed: None,
         }
     }
 
@@ -180,7 +178,7 @@ mod tests {
             }
         }
         let mut failed = row("B2", [[kept, kept], [kept, kept], [None, None]]);
-        failed.failed[2] = Some("unstable at step 3".to_owned());
+        failed.failed = Some((2, "unstable at step 3".to_owned()));
         let found = found(vec![
             row("MPM", [[kept, kept], [kept, Some(0.25)], [Some(3.2), kept]]),
             row("GIMP", sound),

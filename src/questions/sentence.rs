@@ -38,7 +38,6 @@ static ENVIRONMENT: LazyLock<Environment<'static>> = LazyLock::new(|| {
     environment.add_filter("names", |names: Vec<String>, most: Option<usize>| in_words(&names, most));
     environment.add_filter("number", number::rounded);
     environment.add_filter("percent", number::rounded_percent);
-    environment.add_filter("seconds", number::seconds);
     environment.add_filter("short", number::two_digits);
     environment.add_filter("signed_percent", |share: f64| {
         let sign = if share < 0.0 { "−" } else { "+" };

@@ -34,43 +34,25 @@ pub struct SweepRow {
     pub method: SolverName,
     /// At each ratio the relative L2 errors of the nodal displacement and of the pressure at the points.
     pub found: Vec<[Option<f64>; 2]>,
-    /// How the run at each value failed, where it did: such a run has no result that could be lost.
-    pub failed: Vec<Option<String>>,
+    /// The first value at which the run failed, and how: such a run has no result that could be lost.
+    pub failed: Option<(usize, String)>,
 }
 
 /// A method keeps its result where displacement and pressure are off by less than this.
 pub const KEPT: f64 = 0.1;
 
 impl SweepRow {
-    /// Errors of displacement and pressure at a value of the sweep.
-    pub fn errors(&self, place: usize) -> [Option<f64>; 2] {
-        self.found[place]
-    }
-
     /// The first value of the sweep at which the result of a run that ended is lost; nothing where it is kept at all of
     /// them, and of a value at which the method did not run nothing is known.
     pub fn lost_from(&self) -> Option<usize> {
-        let is_kept = |error: Option<f64>| error.is_some_and(|error| error < KEPT);
-        let is_lost = |place: &usize| {
-            let errors = self.errors(*place);
-            self.failed[*place].is_none()
-                && errors.iter().any(Option::is_some)
-                && !errors.into_iter().all(is_kept)
-        };
-        (0..self.found.len()).find(is_lost)
+        let is_kept = |error: &Option<f64>| error.is_some_and(|error| error < KEPT);
+        self.found.iter().position(|errors| has_run(errors) && !errors.iter().all(is_kept))
     }
+}
 
-    /// At how many values the method ran.
-    fn runs(&self) -> usize {
-        let has_run =
-            |place: &usize| self.failed[*place].is_some() || self.errors(*place).iter().any(Option::is_some);
-        (0..self.found.len()).filter(has_run).count()
-    }
-
-    /// The first value of the sweep at which the run failed, and how.
-    pub fn failed_from(&self) -> Option<(usize, &str)> {
-        self.failed.iter().enumerate().find_map(|(place, failed)| Some((place, failed.as_deref()?)))
-    }
+/// Whether there is a result at a value.
+fn has_run(errors: &[Option<f64>; 2]) -> bool {
+    errors.iter().any(Option::is_some)
 }
 
 /// Every method over Poisson's ratio.
@@ -141,9 +123,10 @@ impl StiffnessSweep {
         let row = |method: SolverName| SweepRow {
             method,
             found: values.iter().map(|value| found(method, *value)).collect(),
-            failed: values.iter().map(|value| failure(method, *value)).collect(),
+            failed: (0..values.len()).find_map(|place| Some((place, failure(method, values[place])?))),
         };
-        let is_told = |row: &SweepRow| row.runs() >= LEAST_VALUES || row.failed_from().is_some();
+        let runs = |row: &SweepRow| row.found.iter().filter(|errors| has_run(errors)).count();
+        let is_told = |row: &SweepRow| runs(row) >= LEAST_VALUES || row.failed.is_some();
         let rows = methods.into_iter().map(row).filter(is_told).collect();
         Some(Self { cells: hardest.case.cells, values, time_factor, rows })
     }
@@ -209,7 +192,7 @@ mod tests {
             failed.iter().find(|one| one.status != Status::Ok).expect("it failed").status.clone();
         let found = sweep(&among).expect("values");
         let row = found.rows.iter().find(|row| row.method.to_string() == "MPM").expect("a row");
-        assert_eq!(row.failed_from().map(|(_, how)| how), Some("unstable at step 1"), "{row:?}");
+        assert_eq!(row.failed.as_ref().map(|(_, how)| how.as_str()), Some("unstable at step 1"), "{row:?}");
         // A soil in another water is in no sweep.
         for record in records.iter_mut().filter(|record| place_of(record) == 2) {
             record.case.material.water_bulk_modulus *= 1.5;

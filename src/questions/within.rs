@@ -113,8 +113,8 @@ fn row(
     let step = match choice.largest_step {
         step if step <= 0.0 && choice.integrator.is_empty() => Cell::missing("another program's"),
         step if step <= 0.0 => Cell::missing("no step was needed"),
-        step if choice.is_longest_tried => format!("≥ {}", step_words(step)).into(),
-        step => step_words(step).into(),
+        step if choice.is_longest_tried => format!("≥ {}", duration(step)).into(),
+        step => duration(step).into(),
     };
     let mut row = vec![
         words::quantity(choice.quantity).into(),
@@ -130,11 +130,6 @@ fn row(
     row.extend(has_points.then_some(Cell::Count(choice.points_per_cell as u64)));
     row.extend([step, Cell::Percent(choice.error), Cell::Text(number::time_factor(choice.time_factor))]);
     row
-}
-
-/// A step in the unit that suits it.
-fn step_words(seconds: f64) -> String {
-    if seconds < 1e-6 { number::seconds(seconds) } else { duration(seconds) }
 }
 
 /// Bounds for which the cheapest choice is looked for.

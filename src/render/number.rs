@@ -1,6 +1,6 @@
 //! Numbers in tables and sentences of reports.
 
-use oedometer_wording::{HOUR, MINUTE, typed};
+use oedometer_wording::typed;
 pub use oedometer_wording::{order, rounded};
 
 /// An error: three digits, `5.62e-3`, and a power of ten unless it lies between one and a thousand.
@@ -84,24 +84,6 @@ pub fn rounded_percent(share: f64) -> String {
 /// A size with two digits: `0.012`, `3.4`, `160`.
 pub fn two_digits(value: f64) -> String {
     significant(value, 2)
-}
-
-/// A time in the unit that suits it, three digits.
-pub fn seconds(value: f64) -> String {
-    finite(value, |v| {
-        let (scale, unit) = match v.abs() {
-            0.0 => (1.0, "s"),
-            // Beyond what a clock shows, a power of ten and not a line of digits.
-            a if !(1e-12..1e12).contains(&a) => return format!("{v:.2e} s"),
-            a if a < 0.9995e-6 => (1e9, "ns"),
-            a if a < 0.9995e-3 => (1e6, "µs"),
-            a if a < 0.9995 => (1e3, "ms"),
-            a if a < 600.0 => (1.0, "s"),
-            a if a < 36_000.0 => (1.0 / MINUTE, "min"),
-            _ => (1.0 / HOUR, "h"),
-        };
-        format!("{} {unit}", three_digits(v * scale))
-    })
 }
 
 /// A count, in groups of three from five digits on.
@@ -205,14 +187,6 @@ mod tests {
     }
 
     #[test]
-    fn times_beyond_any_clock_have_a_power_of_ten() {
-        assert_eq!(
-            [1e308, 1e-308, 3600.0, 2e-9].map(seconds),
-            ["1.00e308 s", "1.00e-308 s", "60.0 min", "2.00 ns"]
-        );
-    }
-
-    #[test]
     fn fixed_decimals_have_no_sign_at_zero() {
         assert_eq!([-0.001, -0.05, 156.178].map(|value| fixed(value, 2)), ["0.00", "−0.05", "156.18"]);
         assert_eq!(fixed(-0.0001, 3), "0.000");
@@ -220,26 +194,17 @@ mod tests {
 
     #[test]
     fn what_is_not_finite_is_said_in_every_format() {
-        for show in [error, order, percent, seconds, rounded, exact] {
+        for show in [error, order, percent, rounded, exact] {
             assert_eq!([f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(show), ["NaN", "inf", "-inf"]);
         }
     }
 
     #[test]
-    fn orders_percentages_times_and_counts() {
+    fn orders_percentages_and_counts() {
         assert_eq!([1.998, 2.0, -0.001].map(order), ["2.00", "2.00", "0.00"]);
         assert_eq!(
             [-0.012, 0.5, 1.0, 1.4e-4, 1e-9].map(percent),
             ["-1.20 %", "50.0 %", "100 %", "0.0140 %", "1.00e-7 %"]
-        );
-        assert_eq!(
-            [7.9e-9, 4.5e-6, 0.0123, 59.98, 1200.0, 86_400.0].map(seconds),
-            ["7.90 ns", "4.50 µs", "12.3 ms", "60.0 s", "20.0 min", "24.0 h"]
-        );
-        assert_eq!([0.999_999, 0.000_999_99].map(seconds), ["1.00 s", "1.00 ms"]);
-        assert_eq!(
-            [0.0, 9.996e-7, 599.4, 600.0, 35_970.0, 36_000.0, -0.5].map(seconds),
-            ["0 s", "1.00 µs", "599 s", "10.0 min", "600 min", "10.0 h", "-500 ms"]
         );
         assert_eq!(
             [9.96e-6, 9.94e-6, 0.000_996, 0.000_994, 12.34].map(percent),

@@ -108,7 +108,11 @@ fn answer(finding: &Finding, is_whole: bool) -> Result<Vec<Block>, RenderError> 
 
 /// The verdict on a study in one line: as expected, not as expected, or not compared with golden values.
 pub fn verdict_on(check: &StudyCheck, width: usize) -> String {
-    wrapped(&format!("{} {}: {}", mood_of(check).mark(), check.study, headline(check, true)), "", "  ", width)
+    wrapped(&verdict(check), "", "  ", width)
+}
+
+fn verdict(check: &StudyCheck) -> String {
+    format!("{} {}: {}", mood_of(check).mark(), check.study, headline(check))
 }
 
 fn mood_of(check: &StudyCheck) -> Mood {
@@ -178,12 +182,7 @@ pub fn markdown_of(
     let mut text = "## oedometer check\n".to_owned();
     let (sound, unsound): (Vec<_>, Vec<_>) = checks.iter().partition(|check| check.end() == CheckEnd::Pass);
     for check in unsound.into_iter().chain(sound) {
-        let mut blocks = vec![Block::Heading(format!(
-            "{} {}: {}",
-            mood_of(check).mark(),
-            check.study,
-            headline(check, true)
-        ))];
+        let mut blocks = vec![Block::Heading(verdict(check))];
         blocks.extend(before(check, true));
         blocks.extend(after(check, file_of(&check.study).as_deref()));
         let _ = write!(text, "\n{}", page::markdown_of(&blocks)?);
@@ -248,8 +247,7 @@ pub fn all_judgements(checks: &[StudyCheck]) -> Table {
             (false, CheckEnd::HeldBack) => (Mood::Note, "not run"),
             (false, _) => (Mood::Fail, "fail"),
         };
-        let reason: Vec<String> =
-            std::iter::once(headline(check, false)).chain(check.told_inputs()).collect();
+        let reason: Vec<String> = std::iter::once(headline(check)).chain(check.told_inputs()).collect();
         whole.rows.push(vec![
             check.study.as_str().into(),
             Cell::Verdict(mood, word.to_owned()),
@@ -261,8 +259,8 @@ pub fn all_judgements(checks: &[StudyCheck]) -> Table {
     whole
 }
 
-/// The verdict in words; what to do about golden values that are missing is no part of a short one.
-fn headline(check: &StudyCheck, is_short: bool) -> String {
+/// The verdict in words.
+fn headline(check: &StudyCheck) -> String {
     let [failed, unsound] = [&check.failed_cases, &check.unsound].map(Vec::len);
     let expectations = match check.judgements.len() {
         0 if check.expected > 0 => {
@@ -290,10 +288,7 @@ fn headline(check: &StudyCheck, is_short: bool) -> String {
         Some(error) if error.is_missing() && check.met() < check.judgements.len() || failed + unsound > 0 => {
             String::new()
         }
-        Some(GoldenError::Missing(path)) => {
-            let advice = if is_short { "" } else { ": accept these if they look right" };
-            format!(", no golden values yet ({}){advice}", path.display())
-        }
+        Some(GoldenError::Missing(path)) => format!(", no golden values yet ({})", path.display()),
         Some(error) => format!(", {error}"),
     };
     let count = |count: usize, one: &str, several: &str| match count {
@@ -410,7 +405,7 @@ mod tests {
             (
                 StudyCheck { golden_problem: Some(missing), ..check(0) },
                 "fail",
-                "no golden values yet (study.csv): accept these if they look right",
+                "no golden values yet (study.csv)",
                 Some(accept),
             ),
             (differing(Change::Stale), "fail", "1 do not", Some(accept)),

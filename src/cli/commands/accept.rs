@@ -163,10 +163,7 @@ fn older_of(folder: &Path, study: &str) -> anyhow::Result<Option<GoldenFile>> {
     }
 }
 
-/// Values that may move before an acceptance shows all that did.
-const FEW: usize = 5;
-
-/// Shows what an acceptance changes, where that is more than a few values; the orders that each study loses.
+/// Shows what an acceptance changes; the orders that each study loses.
 fn tell_changes(
     studies: &[Study],
     records: &[Vec<Record>],
@@ -177,10 +174,8 @@ fn tell_changes(
         Some(StudyComparison::of(&study.name, &before, &StudyState::of_records(&study.name, records)))
     };
     let all: Vec<Option<StudyComparison>> = studies.iter().zip(records).zip(older).map(compared).collect();
-    let is_much = |comparison: &&StudyComparison| {
-        comparison.groups.iter().map(|group| group.values).sum::<usize>() > FEW
-    };
-    let shown: Vec<StudyComparison> = all.iter().flatten().filter(is_much).cloned().collect();
+    let changes = all.iter().flatten().filter(|comparison| !comparison.groups.is_empty());
+    let shown: Vec<StudyComparison> = changes.cloned().collect();
     if !shown.is_empty() {
         print_tables(&comparison_tables(&shown, ["golden values", "now"]), TableFormat::Table)?;
     }

@@ -68,6 +68,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     Ok(Exit::Pass)
 }
 
+/// Whether a description fits a case.
+type Way<'a> = &'a dyn Fn(&&(&Study, &Case)) -> bool;
+
 /// The only case that a description fits.
 fn the_one<'a>(studies: &'a [Study], description: &str) -> anyhow::Result<(&'a Study, &'a Case)> {
     let all =
@@ -89,7 +92,7 @@ fn the_one<'a>(studies: &'a [Study], description: &str) -> anyhow::Result<(&'a S
             || has_words(&format!("{}/{} {}", study.name, case.label(), case.method))
     };
     // A study may have the name of one of its methods, so the case's own words come first.
-    let ways: [&dyn Fn(&&(&Study, &Case)) -> bool; 3] = [&is_label, &has_words_of_case, &has_hash_or_words];
+    let ways: [Way<'_>; 3] = [&is_label, &has_words_of_case, &has_hash_or_words];
     let mut fitting = ways.iter().map(|fits| all.iter().filter(fits).collect::<Vec<_>>());
     let fitting = fitting.find(|fitting| !fitting.is_empty()).unwrap_or_default();
     match fitting.as_slice() {
