@@ -70,16 +70,13 @@ pub fn named(given: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
             }
             chosen.extend(studies);
         } else if path.as_os_str() == RACE && !path.exists() {
-            chosen.extend(shipped_names().into_iter().filter(|name| is_of_race(name)).map(PathBuf::from));
+            let is_of_race = |name: &String| name.split('-').next() == Some(RACE);
+            chosen.extend(shipped_names().into_iter().filter(is_of_race).map(PathBuf::from));
         } else {
             chosen.push(path.clone());
         }
     }
     Ok(chosen)
-}
-
-fn is_of_race(study: &str) -> bool {
-    study.split('-').next() == Some(RACE)
 }
 
 /// The studies of the project around the current folder.

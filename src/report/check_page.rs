@@ -205,17 +205,14 @@ pub fn objections_of(check: &StudyCheck, width: usize) -> Option<String> {
 pub fn next_command(check: &StudyCheck, file: Option<&str>) -> Option<String> {
     let file = file?;
     let explain = |what: &str| Some(format!("oedometer explain \"{what}\" {file}"));
+    // What cannot be read says itself what to do, and what was not run cannot be accepted.
+    let is_unreadable = check.golden_problem.as_ref().is_some_and(|error| !error.is_missing());
     match (check.groups.first(), check.failed_cases.first().or(check.unsound.first())) {
         (Some(group), _) if group.change == Change::Moved => explain(&group.worst.key.to_string()),
         (_, Some(note)) => explain(&note.case),
         _ if check.unmet().next().is_some() => Some(format!("oedometer report {file}")),
         (None, _) if check.golden_problem.is_none() && check.other_inputs.is_empty() => None,
-        // What cannot be read says itself what to do, and what was not run cannot be accepted.
-        _ if check.held_back > 0
-            || check.golden_problem.as_ref().is_some_and(|error| !error.is_missing()) =>
-        {
-            None
-        }
+        _ if check.held_back > 0 || is_unreadable => None,
         _ => Some(format!("oedometer accept {file} --reason \"why the new values are right\"")),
     }
 }
