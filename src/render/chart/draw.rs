@@ -2,6 +2,7 @@
 
 use crate::render::RenderError;
 use crate::render::chart::axis::{Ends, PlacedAxis, Reason, TICK_FONT};
+use crate::render::chart::ends::{end_names, end_names_width};
 use crate::render::chart::looks::{Legend, Look, draw_marker, looks};
 use crate::render::chart::multiples::{SIDE_BY_SIDE, side_by_side};
 use crate::render::chart::rows;
@@ -85,7 +86,7 @@ impl Layout {
 
         let y_axis = PlacedAxis::new(&chart.y, y_ends, (top + tall, top), true);
         let left = PAD + y_axis.label_width() + BESIDE;
-        let room = (wide - left - PAD - 14.0).max(60.0);
+        let room = (wide - left - PAD - 14.0 - end_names_width(chart)).max(60.0);
         let plot = Frame { left, top, right: left + room, bottom: top + tall };
         let x = PlacedAxis::new(&chart.x, x_ends, (plot.left, plot.right), false);
 
@@ -180,6 +181,7 @@ impl Chart {
                 narrow.size.plot_height = self.size.plot_height.min(NARROW_HEIGHT);
                 narrow.size.width = NARROW;
                 // Names beside lines have no room.
+                narrow.names_at_ends = false;
                 narrow.document_of(|| narrow.as_panels((1, NARROW)))
             }
         };
@@ -212,7 +214,8 @@ impl Chart {
         let chart = &self.with_twins_named();
         let layout = Layout::of(chart);
         let back = chart.axes(&layout)? + &chart.lines(&layout)?;
-        let (markers, words) = (chart.markers(&layout)?, rules(chart, &layout)?);
+        let (markers, words) =
+            (chart.markers(&layout)?, rules(chart, &layout)? + &end_names(chart, &layout)?);
         let below = (PAD, layout.plot.bottom + BELOW + 8.0);
         let around = layout.legend.elements(layout.size, below)? + &Self::texts(&layout)?;
         Ok((layout.size, [back, markers, words, around].concat()))

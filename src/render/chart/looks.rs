@@ -146,7 +146,7 @@ impl Legend {
     /// The legend of the series that have something drawn, within so many pixels.
     pub fn of(chart: &Chart, looks: &[Look], is_drawn: impl Fn(usize) -> bool, room: f64) -> Self {
         let mut seen: Vec<(Look, &str)> = Vec::new();
-        let in_legend = |series: &Series| series.style != Style::Context;
+        let in_legend = |series: &Series| !chart.names_at_ends && series.style != Style::Context;
         for (place, (series, look)) in
             chart.series.iter().zip(looks).enumerate().filter(|(_, (one, _))| in_legend(one))
         {

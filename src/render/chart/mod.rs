@@ -5,6 +5,7 @@
 
 mod axis;
 mod draw;
+mod ends;
 mod looks;
 mod multiples;
 mod rows;
@@ -35,6 +36,8 @@ pub struct Chart {
     pub rules: Vec<Rule>,
     /// Rows with words, of a dot plot.
     pub rows: Option<ChartRows>,
+    /// Whether the names of series stand at the ends of their lines, right of the plot, and not in a legend below it.
+    pub names_at_ends: bool,
     /// Width of the figure and height of the plot.
     pub size: Size,
 }
@@ -60,6 +63,7 @@ impl Chart {
             series: Vec::new(),
             rules: Vec::new(),
             rows: None,
+            names_at_ends: false,
             size: Size::default(),
         }
     }

@@ -186,6 +186,7 @@ fn profile_figure(findings: &RaceFindings, group: Group, read_out: ReadOut) -> F
         ChartAxis::log10("work to 1 %, over that of the cheapest method").between(1.0, LARGEST_TAU),
         ChartAxis::linear("share of problems, each family weighs the same").between(0.0, 1.0),
     );
+    chart.names_at_ends = true;
     chart.size = Size { width: 620.0, plot_height: 440.0 };
     let staircase = |steps: &[(f64, f64)]| {
         let mut points: Vec<(f64, f64)> = Vec::new();
