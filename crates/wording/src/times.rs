@@ -58,7 +58,18 @@ mod tests {
     fn times_have_the_unit_that_fits() {
         assert_eq!(
             [5e-9, 3.6e-5, 0.0123, 0.123, 90.0, 130.0, 216e3, 36.0 * HOUR, 40.0 * DAY, 1e12].map(duration),
-            ["5 ns", "36 µs", "12 ms", "0.12 s", "90 s", "2.2 min", "2.5 days", "36 h", "40 days", "3.2e4 years"]
+            [
+                "5 ns",
+                "36 µs",
+                "12 ms",
+                "0.12 s",
+                "90 s",
+                "2.2 min",
+                "2.5 days",
+                "36 h",
+                "40 days",
+                "3.2e4 years"
+            ]
         );
         let days = [365.0, 30.0, 1.0, 365.25, 730.5, 1.5, 400.0, 100.25].map(|days| clock_time(DAY * days));
         assert_eq!(days, ["365 days", "30 days", "1 day", "1 year", "2 years", "36 h", "400 days", "2406 h"]);
