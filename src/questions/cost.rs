@@ -177,7 +177,7 @@ mod tests {
         assert_eq!(
             found.sentence().expect("a sentence"),
             format!(
-                "A pressure within 1 % at every output takes 0.011 s of counted work: `{label}`; `MPM` takes 0.023 s."
+                "A pressure within 1 % at every output takes 11 ms of counted work: `{label}`; `MPM` takes 23 ms."
             )
         );
         let table = found.tables()[0];
