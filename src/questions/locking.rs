@@ -135,8 +135,9 @@ fn figure(rows: &[&SweepRow], ratios: &[f64]) -> Figure {
 mod tests {
     use super::*;
     use crate::campaign::runner::solved;
-    use crate::case::SolverName;
     use crate::case::planned::Tier;
+    use crate::case::{Quantity, Sample, SolverName};
+    use crate::judge::paths::first_error;
     use oedometer_problem::method::Method;
 
     fn row(name: &str, errors: [[Option<f64>; 2]; 3]) -> SweepRow {
@@ -238,6 +239,19 @@ mod tests {
                 .map(|place| StudyResults::new(&all[*place].0, &all[*place].1, Tier::Full))
                 .collect();
             let found = ask(&results).expect("sound cases").expect("who locks");
+            let (study, records) = &all[1];
+            let record =
+                records.iter().find(|record| record.case.material.poissons_ratio == 0.25).expect("ν = 0.25");
+            let method = Cell::Code(record.case.method.to_string());
+            let row = found.tables()[0].rows.iter().find(|row| row[0] == method).expect("its row");
+            let [displacement, pressure] =
+                [(Quantity::Displacement, Sample::Nodes), (Quantity::Pressure, Sample::Points)].map(
+                    |(quantity, sample)| {
+                        let error = first_error(record, quantity, sample, study.references[0].name(), 0.2);
+                        Cell::Error(error.expect("an error"))
+                    },
+                );
+            assert_eq!((&row[2], &row[4]), (&displacement, &pressure));
             let facts: Facts = serde_json::from_value(found.facts).expect("facts");
             assert_eq!((found.studies, facts.methods, facts.cells), (vec!["two".to_owned()], 2, 2));
             assert_eq!(facts.time_factor, 0.2);
