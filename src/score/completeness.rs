@@ -1,8 +1,10 @@
 //! Whether an external result is complete: missing parts make an error small.
 
 use crate::import::SampledState;
+use crate::measure::fields::{ExactFields, resolution};
 use crate::score::coverage;
 use crate::score::coverage::{Bare, End};
+use crate::score::places_of;
 use crate::score::score_series::time_factors;
 use oedometer_exact::row::Axis;
 use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
@@ -20,6 +22,8 @@ const OTHER_UNIT: f64 = 2.5;
 const UNEVEN: f64 = 1.5;
 /// Up to this many distances from the crest are profiles of a layer that were chosen for display.
 const PROFILES: usize = 3;
+/// Share of the largest exact pressure of a state below which a pressure of 0 is right.
+const NEARLY_ZERO: f64 = 1e-3;
 /// Samples that a band has on average where places have no order.
 const PER_BIN: usize = 12;
 
@@ -362,21 +366,41 @@ fn stretch(bare: Bare, from: &str) -> String {
 }
 
 /// Zeros where none can be, as programs write them at nodes without a pressure: pressures of exactly 0 inside the body
-/// beside others. The first such state is named.
-pub fn interior_zeros(parameters: &ColumnParameters, states: &[SampledState]) -> Option<Finding> {
-    states.iter().find_map(|state| {
-        let is_inside = |height: &f64| (RIM..1.0 - RIM).contains(&(height / parameters.height));
-        let inside = state.initial_height.iter().zip(&state.pressure).filter(|(height, _)| is_inside(height));
-        let all = inside.clone().count();
-        let zeros = inside.filter(|(_, pressure)| **pressure == 0.0).count();
-        let when = typed(parameters.time_factor(state.time));
-        let sentence = format!(
-            "at T_v = {when}, {zeros} of {all} pressures inside are exactly 0 and the others are not: programs write 0 \
-             at the middle of sides; keep the corners of the cells ([rows] corners = true in the mapping) or take an \
-             interpolated array"
-        );
-        (zeros > 0 && zeros < all).then(|| Finding::new(Lack::ZerosInside, sentence))
-    })
+/// beside others, where the reference has one. The first such state is named.
+///
+/// # Errors
+/// When the reference refuses a time.
+pub fn interior_zeros(
+    parameters: &ColumnParameters,
+    reference: ReferenceKind,
+    states: &[SampledState],
+) -> Result<Option<Finding>, ExactError> {
+    for (state, time) in states.iter().zip(time_factors(parameters, states)) {
+        let is_inside = |height: f64| (RIM..1.0 - RIM).contains(&(height / parameters.height));
+        let places = 0..state.initial_height.len().min(state.pressure.len());
+        let inside: Vec<usize> = places.filter(|place| is_inside(state.initial_height[*place])).collect();
+        let mut zeros: Vec<usize> =
+            inside.iter().copied().filter(|place| state.pressure[*place] == 0.0).collect();
+        if zeros.is_empty() || zeros.len() == inside.len() {
+            continue;
+        }
+        // A wave that has not come, a line between crest and trough, a drained side: there 0 is right.
+        let reference = Reference::new(reference, parameters, &[time])?;
+        let exact = ExactFields::of(&reference, time, places_of(state, parameters.height))?.pressure;
+        let largest = exact.iter().fold(0.0_f64, |largest, pressure| largest.max(pressure.abs()));
+        let nearly_zero = NEARLY_ZERO * largest + resolution(&reference, time) * parameters.load;
+        zeros.retain(|place| exact[*place].abs() > nearly_zero);
+        if !zeros.is_empty() {
+            let (when, zeros, all) = (typed(parameters.time_factor(state.time)), zeros.len(), inside.len());
+            let sentence = format!(
+                "at T_v = {when}, {zeros} of {all} pressures inside are exactly 0 and the others are not: programs \
+                 write 0 at the middle of sides; keep the corners of the cells ([rows] corners = true in the \
+                 mapping) or take an interpolated array"
+            );
+            return Ok(Some(Finding::new(Lack::ZerosInside, sentence)));
+        }
+    }
+    Ok(None)
 }
 
 #[cfg(test)]
@@ -387,21 +411,30 @@ mod tests {
     fn zeros_at_the_middle_of_sides_are_told_and_those_of_the_surface_are_not() {
         let column = ColumnParameters::default();
         let heights: Vec<f64> = (0..=4).map(|node| f64::from(node) / 4.0).collect();
-        let state = |pressure: [f64; 5]| SampledState {
-            time: column.time(0.1),
-            initial_height: heights.clone(),
-            pressure: pressure.to_vec(),
-            ..SampledState::default()
+        let found = |reference: ReferenceKind, time: f64, pressure: [f64; 5], distance: &[f64]| {
+            let state = SampledState {
+                time: column.time(time),
+                initial_height: heights.clone(),
+                initial_distance: distance.to_vec(),
+                pressure: pressure.to_vec(),
+                ..SampledState::default()
+            };
+            let found = interior_zeros(&column, reference, &[state]).expect("the reference takes the time");
+            found.map(|one| (one.name, one.sentence.replace("0.09999999999999999", "0.1")))
         };
-        let found = interior_zeros(&column, &[state([1.0, 0.0, 0.8, 0.0, 0.0])]).expect("a finding");
+        let (kind, layer) = (ReferenceKind::Terzaghi, ReferenceKind::CosineLayer);
         let told = "at T_v = 0.1, 2 of 3 pressures inside are exactly 0 and the others are not: programs write 0 at the middle \
                     of sides; keep the corners of the cells ([rows] corners = true in the mapping) or take an interpolated array";
-        assert_eq!(
-            (found.name, found.sentence.replace("0.09999999999999999", "0.1")),
-            (Lack::ZerosInside, told.to_owned())
-        );
-        assert_eq!(interior_zeros(&column, &[state([1.0, 0.9, 0.8, 0.4, 0.0])]), None);
-        assert_eq!(interior_zeros(&column, &[state([0.0; 5])]), None, "nothing but zeros is another mistake");
+        let midsides = [1.0, 0.0, 0.8, 0.0, 0.0];
+        assert_eq!(found(kind, 0.1, midsides, &[]), Some((Lack::ZerosInside, told.to_owned())));
+        assert_eq!(found(kind, 0.1, [1.0, 0.9, 0.8, 0.4, 0.0], &[]), None);
+        assert_eq!(found(kind, 0.1, [0.0; 5], &[]), None, "nothing but zeros is another mistake");
+        // Half-way between crest and trough, ahead of a wave, and at rest there is no pressure.
+        let half = 0.5 * column.length;
+        assert_eq!(found(layer, 0.1, midsides, &[0.0, half, 0.0, half, 0.0]), None);
+        assert!(found(layer, 0.1, midsides, &[0.0; 5]).is_some());
+        assert_eq!(found(ReferenceKind::DynamicColumn, 1e-6, [0.0, 0.0, 1e-9, 0.9, 0.0], &[]), None);
+        assert_eq!(found(ReferenceKind::AtRest, 0.1, [0.0, 0.0, 1e-17, 0.0, 0.0], &[]), None);
     }
 
     #[test]

@@ -106,6 +106,24 @@ fn places_of(state: &SampledState, height: f64) -> SamplePlaces<'_> {
     SamplePlaces { height, heights: &state.initial_height, distances: &state.initial_distance }
 }
 
+/// The settlement that displacements are measured by, m.
+fn settled(reference: &Reference, parameters: &ColumnParameters) -> Result<f64, ExactError> {
+    if reference.is_plane() { reference.settlement(LONG_AFTER) } else { Ok(parameters.final_settlement()) }
+}
+
+/// Whether the reference has a settlement at one of the states that an error can be relative to.
+fn has_settlement(
+    parameters: &ColumnParameters,
+    reference: ReferenceKind,
+    states: &[SampledState],
+) -> Result<bool, ExactError> {
+    let times = time_factors(parameters, states);
+    let reference = Reference::new(reference, parameters, &times)?;
+    let scale = settled(&reference, parameters)?;
+    let errors = times.iter().map(|time| settlement_error(&reference, *time, 0.0, scale));
+    Ok(errors.collect::<Result<Vec<_>, _>>()?.iter().any(Option::is_some))
+}
+
 /// Compares states with references.
 ///
 /// ```
@@ -179,11 +197,7 @@ impl Score {
             places,
             computed,
         )?;
-        let settled = if reference.is_plane() {
-            reference.settlement(LONG_AFTER)?
-        } else {
-            parameters.final_settlement()
-        };
+        let settled = settled(reference, parameters)?;
         // The components one after the other.
         let displacement = one_after_the_other(&state.displacement, &state.horizontal_displacement);
         let exact_displacement = one_after_the_other(

@@ -13,7 +13,7 @@ use crate::record::ErrorRow;
 use crate::score::completeness::{Finding, Lack, Whole, interior_zeros, missing_times, uneven_meshes};
 use crate::score::diagnosis::{SEVERAL_RUNS, diagnosis};
 use crate::score::score_series::{ScoredSeries, TimeGroups, series_of, time_factors};
-use crate::score::{Score, score};
+use crate::score::{Score, has_settlement, score};
 use crate::study::asked::Asked;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::parameters::ColumnParameters;
@@ -287,7 +287,7 @@ impl Scored {
             for set in beside_by_set(states) {
                 self.score.warnings.extend(Whole { has_volumes: false, ..whole }.findings(&set)?);
             }
-            self.score.warnings.extend(interior_zeros(parameters, states));
+            self.score.warnings.extend(interior_zeros(parameters, *reference, states)?);
             self.run.notes.extend(whole.unit_of_volume(states));
             self.run.notes.extend(whole.profiles(states));
             let are_nodes = held.mapping.sample == Sample::Nodes;
@@ -298,8 +298,9 @@ impl Scored {
             let mixture = self.run.contradictions.first().filter(|_| !are_runs);
             self.score.diagnosis =
                 mixture.map_or(told, |why| vec![format!("{why}: was a second run appended?")]);
+            let settles = has_settlement(parameters, *reference, states)?;
+            self.note_absences(held.case, settles);
         }
-        self.note_absences(held.case);
         Ok(())
     }
 
@@ -327,13 +328,14 @@ impl Scored {
         absent.chain(unended).chain(doubts).collect()
     }
 
-    /// Says which quantity has no error, and why.
-    fn note_absences(&mut self, case: &Case) {
-        let has = |quantity: Quantity| self.score.errors.iter().any(|row| row.quantity == quantity);
-        let [displacement, settlement] = [Quantity::Displacement, Quantity::Settlement].map(has);
-        // It was compared with nothing, or is left out on purpose.
-        let is_known = self.run.without.contains(&Quantity::Settlement)
-            || self.score.unresolved.iter().any(|output| output.quantity == Quantity::Settlement);
+    /// Says which quantity has no error, and why; `settles`: whether the problem has a settlement at these times.
+    fn note_absences(&mut self, case: &Case, settles: bool) {
+        let is_compared = |quantity: Quantity| {
+            self.score.errors.iter().any(|row| row.quantity == quantity)
+                || self.score.unresolved.iter().any(|output| output.quantity == quantity)
+        };
+        let [displacement, settlement] = [Quantity::Displacement, Quantity::Settlement].map(is_compared);
+        let is_known = !settles || self.run.without.contains(&Quantity::Settlement);
         let is_plane = case.scene.body.is_plane();
         let is_curve = self.run.states.iter().all(|state| state.initial_height.is_empty());
         if displacement && !settlement && !is_known && !is_curve {
@@ -371,6 +373,7 @@ mod tests {
     use super::*;
     use crate::case::{Norm, Task};
     use crate::import::mapping::preset::CONVENTION;
+    use crate::score::Unresolved;
     use crate::score::tests::state;
     use crate::study::file::StudySource;
     use oedometer_scenes::{COSINE_LAYER, MANDEL, Scene, TERZAGHI};
@@ -443,17 +446,20 @@ mod tests {
             absolute: 0.1,
         };
         let (moved, settled) = (row(Quantity::Displacement), row(Quantity::Settlement));
-        let notes = |scene: &'static Scene, errors: &[ErrorRow], horizontal: &[f64]| {
+        let notes_of = |scene: &'static Scene, score: Score, horizontal: &[f64], settles: bool| {
             let states = vec![SampledState {
                 horizontal_displacement: horizontal.to_vec(),
                 initial_height: vec![0.5],
                 ..SampledState::default()
             }];
             let run = Run { states, ..Run::default() };
-            let mut one = Scored { run, score: Score { errors: errors.to_vec(), ..Score::default() } };
-            one.note_absences(&Case::seed(Task::Solve, scene));
+            let mut one = Scored { run, score };
+            one.note_absences(&Case::seed(Task::Solve, scene), settles);
             let not_judged = one.score.not_judged.into_iter().map(|finding| finding.sentence);
             not_judged.chain(one.run.notes).collect::<Vec<String>>()
+        };
+        let notes = |scene: &'static Scene, errors: &[ErrorRow], horizontal: &[f64]| {
+            notes_of(scene, Score { errors: errors.to_vec(), ..Score::default() }, horizontal, true)
         };
         let surface = "the settlement is not judged: no sample lies on the surface";
         let crest = "the settlement is not judged: no sample lies on the surface under the crest of the load";
@@ -468,5 +474,24 @@ mod tests {
         assert_eq!(notes(&COSINE_LAYER, &both, &[]), [vertical]);
         assert_eq!(notes(&TERZAGHI, &both, &[]), [""; 0]);
         assert_eq!(notes(&COSINE_LAYER, &[settled], &[]), [""; 0], "no displacement at all");
+        // At the base the exact displacement is 0, and the settlement is judged no more than elsewhere; a problem without one
+        // lacks none.
+        let at_base = Unresolved {
+            time_factor: 0.1,
+            quantity: Quantity::Displacement,
+            sample: Sample::Nodes,
+            reference: "terzaghi".to_owned(),
+            absolute: 0.0,
+        };
+        let vanishing = Score { unresolved: vec![at_base], ..Score::default() };
+        for (settles, told) in [(true, &[surface][..]), (false, &[])] {
+            assert_eq!(notes_of(&TERZAGHI, vanishing.clone(), &[], settles), told);
+        }
+        let settles = |kind: ReferenceKind, time: f64| {
+            has_settlement(&ColumnParameters::default(), kind, &[state(20, time, |_| 0.0)])
+        };
+        let all = [(ReferenceKind::Terzaghi, 0.1), (ReferenceKind::TerzaghiIncompressible, 0.0)];
+        assert_eq!(all.map(|(kind, time)| settles(kind, time)), [Ok(true), Ok(false)]);
+        assert_eq!(settles(ReferenceKind::AtRest, 0.1), Ok(false));
     }
 }
