@@ -81,7 +81,7 @@ pub fn judge(
     let formal_order = context.formal_order.or(expectation.order.map(|band| band.value));
     let context = Context { formal_order, ..context.clone() };
     let classification = classify(series, &context);
-    let problems = expectation.problems();
+    let problems: Vec<&str> = expectation.problems().iter().map(|problem| problem.sentence).collect();
     let mut checks = Vec::new();
     if !problems.is_empty() {
         checks.push(Check::failed("expectation", problems.join("; ")));

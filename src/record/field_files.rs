@@ -4,7 +4,7 @@
 use crate::case::Case;
 use crate::record::Record;
 use oedometer_problem::snapshot::Snapshot;
-use oedometer_scenes::scene::Body;
+use oedometer_scenes::scene::{Body, LoadKind};
 use std::fmt::{Display, Write};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -35,7 +35,10 @@ pub fn write_fields(record: &Record, folder: &Path) -> io::Result<PathBuf> {
         &list,
         format!("<?xml version=\"1.0\"?>\n<VTKFile {kind}>\n<Collection>\n{sets}</Collection>\n</VTKFile>\n"),
     )?;
-    fs::write(folder.join(MEANING), meaning_of(&record.case))?;
+    // The fields of a footing have no exact solution.
+    if record.case.scene.load != LoadKind::Pushed {
+        fs::write(folder.join(MEANING), meaning_of(&record.case))?;
+    }
     Ok(list)
 }
 

@@ -14,6 +14,7 @@ use oedometer_soil::layers::SoilLayer;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use std::collections::BTreeMap;
+use std::ops::Range;
 use toml::de::Deserializer;
 
 /// Name of the study that a command line describes.
@@ -284,6 +285,22 @@ pub struct ExpectTable {
     /// Lowest test level that includes it.
     #[serde(default)]
     pub tier: Tier,
+}
+
+impl ExpectTable {
+    /// Where the table of a demand stands.
+    pub fn place_of(&self, key: &str) -> Option<Range<usize>> {
+        match key {
+            "order" => self.order.as_ref().map(Placed::span),
+            "at" => self.at.as_ref().map(Placed::span),
+            "spread" => self.spread.as_ref().map(Placed::span),
+            "floor" => self.floor.as_ref().map(Placed::span),
+            "oscillation" => self.oscillation.as_ref().map(Placed::span),
+            "uncertainty" => self.uncertainty.as_ref().map(Placed::span),
+            "xfail" => self.xfail.as_ref().map(Placed::span),
+            _ => None,
+        }
+    }
 }
 
 /// What the single cases that its inputs select must do.

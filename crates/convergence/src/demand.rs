@@ -77,6 +77,31 @@ impl FloorBand {
     }
 }
 
+/// What is wrong with an expectation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DemandProblem {
+    /// The key that is wrong; empty where it is none of them.
+    pub key: &'static str,
+    /// What is wrong.
+    pub sentence: &'static str,
+}
+
+impl DemandProblem {
+    /// What would be right.
+    pub fn right(&self) -> &'static str {
+        match self.key {
+            "order" => "write it like `order = { value = 2.0, minus = 0.1, plus = 0.15 }`",
+            "at" => "write it like `at = { cells = 10, above = 1e-3, below = 1e-2 }`",
+            "spread" => "write it like `spread = { water_bulk_modulus = 1e9, below = 0.02 }`",
+            "floor" => "write it like `floor = { above = 1e-4, below = 1e-3 }`",
+            "oscillation" => "write it like `oscillation = { below = 0.01 }`",
+            "uncertainty" => "write it like `uncertainty = { below = 1e-3 }`",
+            "xfail" => "write why it fails, like `xfail = { reason = \"issue 7\" }`",
+            _ => "add what must hold, like `order = { value = 2.0 }` or `at = { cells = 10, below = 1e-2 }`",
+        }
+    }
+}
+
 impl SeriesDemand {
     /// The class that must be found, if any.
     pub fn expected_class(&self) -> Option<Class> {
@@ -84,7 +109,7 @@ impl SeriesDemand {
     }
 
     /// What is wrong with the expectation itself; such an expectation never passes.
-    pub fn problems(&self) -> Vec<String> {
+    pub fn problems(&self) -> Vec<DemandProblem> {
         let positive = |value: f64| value.is_finite() && value > 0.0;
         let width = |value: f64| value.is_finite() && value >= 0.0;
         let &Self { order, at, class, floor, spread, oscillation_below: oscillation, .. } = self;
@@ -95,24 +120,35 @@ impl SeriesDemand {
         let is_band = |band: FloorBand| width(band.above) && positive(band.below) && band.above <= band.below;
         let has_reason = |known: &KnownFailure| !known.reason.trim().is_empty();
         let rules = [
-            (order.is_none_or(|band| positive(band.value)), "the expected order must be a positive number"),
-            (order.is_none_or(order_width), "`minus` and `plus` of the order must be 0 or more"),
-            (at.is_none_or(|at| positive(at.size)), "the level of `at` must have a positive size"),
-            (at.is_none_or(|at| positive(at.below)), "`below` of `at` must be a positive number"),
-            (at.is_none_or(range), "`above` of `at` must be 0 or more and smaller than `below`"),
+            ("order", order.is_none_or(|band| positive(band.value)), "the expected order must be a positive number"),
+            ("order", order.is_none_or(order_width), "`minus` and `plus` of the order must be 0 or more"),
+            ("at", at.is_none_or(|at| positive(at.size)), "the level of `at` must have a positive size"),
+            ("at", at.is_none_or(|at| positive(at.below)), "`below` of `at` must be a positive number"),
+            ("at", at.is_none_or(range), "`above` of `at` must be 0 or more and smaller than `below`"),
             (
+                "spread",
                 spread.is_none_or(|spread| positive(spread.size) && positive(spread.below)),
                 "`spread` needs a level of a positive size and a positive bound",
             ),
             (
+                "floor",
                 floor.is_none_or(is_band),
                 "the plateau must lie between `above`, 0 or more, and a larger `below`",
             ),
-            (oscillation.is_none_or(f64::is_finite), "the bound on the oscillation must be a number"),
-            (uncertainty.is_none_or(positive), "the bound on the uncertainty must be a positive number"),
-            (self.xfail.as_ref().is_none_or(has_reason), "a known failure needs a reason"),
-            (asks || oscillation.is_some() || uncertainty.is_some(), "the expectation demands nothing"),
+            (
+                "oscillation",
+                oscillation.is_none_or(f64::is_finite),
+                "the bound on the oscillation must be a number",
+            ),
+            (
+                "uncertainty",
+                uncertainty.is_none_or(positive),
+                "the bound on the uncertainty must be a positive number",
+            ),
+            ("xfail", self.xfail.as_ref().is_none_or(has_reason), "a known failure needs a reason"),
+            ("", asks || oscillation.is_some() || uncertainty.is_some(), "the expectation demands nothing"),
         ];
-        rules.into_iter().filter(|(met, _)| !met).map(|(_, problem)| problem.to_owned()).collect()
+        let wrong = rules.into_iter().filter(|(_, is_met, _)| !is_met);
+        wrong.map(|(key, _, sentence)| DemandProblem { key, sentence }).collect()
     }
 }

@@ -25,7 +25,7 @@ mod series;
 mod uncertainty;
 
 pub use class::{Class, Classification, Context, FLOOR_LEVELS, Floor, classify};
-pub use demand::{ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand};
+pub use demand::{DemandProblem, ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand};
 pub use fit::floor::{Limiter, LimiterKind, hidden_floor};
 pub use orders::{SlopeFit, WINDOW, finest_order, pair_orders, slope};
 pub use pareto::{CostPoint, ParetoChange, front};

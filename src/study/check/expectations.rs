@@ -112,7 +112,8 @@ impl Checker<'_> {
             }),
         };
         for problem in demand.problems() {
-            self.complain(table.span(), problem, "see the other expectations of the shipped studies");
+            let place = table.place_of(problem.key).unwrap_or_else(|| table.span());
+            self.complain(place, problem.sentence, problem.right());
         }
         self.series_is_there(table, &selection, time_factor, subject.planned);
         let expectation = SeriesExpectation {

@@ -510,8 +510,11 @@ fn what_is_not_judged_is_told_and_strict_does_not_pass_it() {
     fs::write(at.join("nodes.toml"), declared).expect("a file");
     let nodes_declared = ["--mapping", "nodes.toml"];
     let settlement = "the settlement is not judged";
+    // At the base alone the exact displacement is 0, and nothing is known about the settlement.
+    let above_base: Vec<u32> = (0..20).collect();
     for (without, options, lacks) in [
-        (&[][..], &[][..], &[][..]),
+        (&above_base[..], &[][..], &[settlement][..]),
+        (&[], &[], &[]),
         (&[0], &[], &[surface, settlement]),
         (&[0], &["--without", "settlement"], &[surface]),
         (&[20], &[], &[base]),
@@ -540,6 +543,18 @@ fn what_is_not_judged_is_told_and_strict_does_not_pass_it() {
                 below.err
             );
         }
+    }
+}
+
+#[test]
+fn a_result_of_which_nothing_is_compared_does_not_pass() {
+    let folder = TempDir::new().expect("a folder");
+    nodes(folder.path(), ("terzaghi", "a.csv"), 20, 1.0, &[], &[]);
+    let gate = ["score", "a.csv", "--scene", "terzaghi", "--strict", "--without"];
+    for (left_out, code) in [("pressure", 0), ("pressure,displacement,settlement", 1)] {
+        let told = call(folder.path(), &[&gate[..], &[left_out]].concat());
+        let is_told = told.err.contains("✗ a.csv: nothing of it is compared");
+        assert_eq!((told.code, is_told), (code, code == 1), "{left_out}: {}", told.err);
     }
 }
 

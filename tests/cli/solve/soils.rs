@@ -94,6 +94,12 @@ fn a_footing_prints_its_load_and_locks_with_full_integration() {
     assert!((after / exact - 1.0).abs() < 0.1 && (after - before).abs() < 0.02, "{before} {after}");
     let [_, before, after] = loads("GIMP")[..] else { panic!("three outputs") };
     assert!(after > 1.15 * exact && after > before, "{before} {after}");
+    // Its fields have no exact solution: there is no mapping to score them by, and no file is read.
+    let folder = TempDir::new().expect("a folder");
+    let solved = call(folder.path(), &["solve", "footing", "--cells", "4", "--fields", "f"]);
+    assert_eq!((solved.code, folder.path().join("f/mapping.toml").exists()), (0, false), "{}", solved.err);
+    let scored = call(folder.path(), &["score", "f/fields.pvd", "--scene", "footing"]);
+    assert!(scored.code == 2 && scored.err.contains("only the collapse load"), "{}", scored.err);
 }
 
 #[test]

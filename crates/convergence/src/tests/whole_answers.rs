@@ -338,7 +338,8 @@ fn invalid_demands_are_refused_with_a_reason() {
     let mut text = String::new();
     for demand in demands {
         let class = demand.expected_class().map_or("no class", Class::name);
-        writeln!(text, "{demand:?}\n    {class}; {}", demand.problems().join("; ")).expect("memory");
+        let problems: Vec<&str> = demand.problems().iter().map(|problem| problem.sentence).collect();
+        writeln!(text, "{demand:?}\n    {class}; {}", problems.join("; ")).expect("memory");
     }
     for value in [1.69, 1.7, 2.0, 2.25, 2.26, f64::NAN] {
         let band = OrderBand { value: 2.0, minus: 0.3, plus: 0.25 };

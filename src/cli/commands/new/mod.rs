@@ -2,6 +2,7 @@
 
 use crate::case::solver::{Attached, DIGEST_DIGITS};
 use crate::cli::exit::{Ended, Exit};
+use crate::cli::job_list::quoted;
 use crate::cli::output::say;
 use crate::study::file::StudySource;
 use crate::study::shipped::{name_of, refused_name, shipped_studies};
@@ -62,7 +63,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     let file = OpenOptions::new().write(true).create_new(true).open(&path);
     file.and_then(|mut file| file.write_all(text.as_bytes())).map_err(|error| not_written(&path, &error))?;
-    say!("wrote {}; next: oedometer check {}", path.display(), path.display());
+    say!("wrote {}; next: oedometer check {}", path.display(), quoted(&path.to_string_lossy()));
     Ok(Exit::Pass)
 }
 
@@ -143,7 +144,7 @@ fn write_adapter(folder: &Path, language: Language) -> anyhow::Result<Exit> {
         "{} attaches {}, a small solver to replace with yours; next: oedometer check {} --allow-solvers",
         study.display(),
         folder.join(file).display(),
-        study.display()
+        quoted(&study.to_string_lossy())
     );
     Ok(Exit::Pass)
 }

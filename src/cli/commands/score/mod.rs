@@ -19,6 +19,7 @@ use crate::score::score_series::ScoredSeries;
 use crate::study::asked::Asked;
 use crate::study::overrides::Outputs;
 use crate::study::solver::Preset;
+use oedometer_exact::{ExactError, ReferenceKind};
 use oedometer_scenes::Scene;
 use oedometer_wording::{count_of, typed};
 use std::path::PathBuf;
@@ -99,6 +100,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     let asked = Asked::of_scene(&arguments.scene, &arguments.outputs)?;
     tell_warnings(&asked.study);
+    // Whatever the files have, there is nothing to compare them with.
+    if asked.references.contains(&ReferenceKind::Footing) {
+        return Err(ExactError::NoFields.into());
+    }
     let case = asked.case();
     let (mapping, mut runs) = scored_files::read(arguments, case, &asked.requested)?;
     for run in &mut runs {
@@ -225,8 +230,12 @@ impl Arguments {
             ScoredCase { subject, failure: Some(format!("{name}{word}: {sentence}")) }
         };
         let lacks: Vec<ScoredCase> = scored.score.warnings.iter().chain(not_judged).map(case).collect();
-        let complete = || vec![ScoredCase { subject: format!("{}/complete", scored.name()), failure: None }];
-        if lacks.is_empty() { complete() } else { lacks }
+        if !lacks.is_empty() {
+            return lacks;
+        }
+        let is_nothing = scored.score.errors.is_empty() && scored.score.unresolved.is_empty();
+        let failure = is_nothing.then(|| format!("{}nothing of it is compared", self.name_of(scored, results)));
+        vec![ScoredCase { subject: format!("{}/complete", scored.name()), failure }]
     }
 }
 

@@ -175,7 +175,7 @@ fn each_fault_of_a_mapping_is_told_alone_in_its_own_sentence() {
 fn what_is_taken_for_granted_is_each_unit_and_sign_of_a_column_that_is_there() {
     let columns = "columns = { x = 'x', p = 'p', u_x = 'u', u_y = 'v', effective_stress = 's' }\n";
     let (unit, p, stress) = (
-        "the unit of stresses, taken as Pa",
+        "the unit of stresses, taken as Pa where the file states none",
         "the sign of `p`, taken as compression-positive",
         "the sign of `effective_stress`, taken as compression-positive",
     );
