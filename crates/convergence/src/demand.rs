@@ -120,7 +120,11 @@ impl SeriesDemand {
         let is_band = |band: FloorBand| width(band.above) && positive(band.below) && band.above <= band.below;
         let has_reason = |known: &KnownFailure| !known.reason.trim().is_empty();
         let rules = [
-            ("order", order.is_none_or(|band| positive(band.value)), "the expected order must be a positive number"),
+            (
+                "order",
+                order.is_none_or(|band| positive(band.value)),
+                "the expected order must be a positive number",
+            ),
             ("order", order.is_none_or(order_width), "`minus` and `plus` of the order must be 0 or more"),
             ("at", at.is_none_or(|at| positive(at.size)), "the level of `at` must have a positive size"),
             ("at", at.is_none_or(|at| positive(at.below)), "`below` of `at` must be a positive number"),

@@ -205,7 +205,10 @@ fn units_and_signs_that_nobody_declared_are_warned_of_and_fail_a_gate() {
         "{}",
         told.err
     );
-    for asked in ["the unit of stresses, taken as Pa where the file states none", "the sign of `p`, taken as compression-positive"] {
+    for asked in [
+        "the unit of stresses, taken as Pa where the file states none",
+        "the sign of `p`, taken as compression-positive",
+    ] {
         assert!(told.err.contains(asked), "{}", told.err);
     }
     for gate in [&["a.csv", "--strict"][..], &["a.csv", "--below", "0.1"]] {

@@ -234,7 +234,8 @@ impl Arguments {
             return lacks;
         }
         let is_nothing = scored.score.errors.is_empty() && scored.score.unresolved.is_empty();
-        let failure = is_nothing.then(|| format!("{}nothing of it is compared", self.name_of(scored, results)));
+        let failure =
+            is_nothing.then(|| format!("{}nothing of it is compared", self.name_of(scored, results)));
         vec![ScoredCase { subject: format!("{}/complete", scored.name()), failure }]
     }
 }

@@ -423,7 +423,10 @@ impl Mapping {
         let (columns, units, sign) = (&self.columns, &self.units, &self.sign);
         let is_stress = columns.p.is_some() || columns.effective_stress.is_some();
         let taken: Vec<&str> = [
-            (is_stress && units.stress.is_none(), "the unit of stresses, taken as Pa where the file states none"),
+            (
+                is_stress && units.stress.is_none(),
+                "the unit of stresses, taken as Pa where the file states none",
+            ),
             (columns.p.is_some() && sign.p.is_none(), "the sign of `p`, taken as compression-positive"),
             (
                 columns.effective_stress.is_some() && sign.effective_stress.is_none(),
