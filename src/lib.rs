@@ -160,6 +160,7 @@ use oedometer_case as case;
 use oedometer_foreign as foreign;
 use oedometer_foreign::import;
 
+pub use measure::soundness;
 /// Exact solutions, by one door:
 ///
 /// ```
@@ -172,7 +173,6 @@ use oedometer_foreign::import;
 /// assert!((at_the_base - 0.949_3).abs() < 1e-4);
 /// # Ok::<(), oedometer::exact::ExactError>(())
 /// ```
-pub use measure::soundness;
 pub use oedometer_exact as exact;
 
 // What a study is, and how it is run and judged.

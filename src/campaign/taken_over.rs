@@ -1,5 +1,6 @@
 //! Results of other programs that a run takes over from an earlier one, and by what these are known.
 
+use crate::case::grouping::grouped;
 use crate::record::Record;
 use oedometer_wording::{count_of, first_few};
 
@@ -33,23 +34,13 @@ impl TakenOver {
 
     /// The sentences on several, one for each solver and origin.
     pub fn sentences(all: &[Self]) -> Vec<String> {
-        let mut groups: Vec<(&Self, Vec<&str>)> = Vec::new();
-        for result in all {
-            let is_alike = |other: &Self| {
-                (&other.solver, &other.made_by, other.is_proven)
-                    == (&result.solver, &result.made_by, result.is_proven)
-            };
-            match groups.iter_mut().find(|(first, _)| is_alike(first)) {
-                Some((_, cases)) => cases.push(&result.case),
-                None => groups.push((result, vec![&result.case])),
-            }
-        }
-        groups.into_iter().map(|(first, cases)| first.sentence(&cases)).collect()
+        let groups = grouped(all, |result| (&result.solver, &result.made_by, result.is_proven));
+        groups.into_iter().map(|(_, alike)| alike[0].sentence(&alike)).collect()
     }
 
-    fn sentence(&self, cases: &[&str]) -> String {
-        let count = count_of(cases.len(), "result", "results");
-        let cases = cases.iter().map(|case| (*case).to_owned()).collect();
+    fn sentence(&self, alike: &[&Self]) -> String {
+        let count = count_of(alike.len(), "result", "results");
+        let cases = alike.iter().map(|result| result.case.clone()).collect();
         let cases = first_few(cases, MOST_CASES).join(", ");
         let proof = if self.is_proven {
             "whose version and named files are unchanged"

@@ -1,5 +1,6 @@
 //! Cases of studies run, kept and told of, as several commands do it.
 
+use crate::campaign::case_run::all_cores;
 use crate::campaign::case_runner::time_study;
 use crate::campaign::runner::{RunError, RunOptions, RunReport, Selected, run_studies, run_studies_thinned};
 use crate::campaign::taken_over::TakenOver;
@@ -19,9 +20,7 @@ use std::path::Path;
 
 /// Cases at the same time: what was asked for, or one a core.
 pub fn jobs_of(asked: Option<u64>) -> usize {
-    asked
-        .and_then(|jobs| usize::try_from(jobs).ok())
-        .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get))
+    asked.and_then(|jobs| usize::try_from(jobs).ok()).unwrap_or_else(all_cores)
 }
 
 /// Runs the selected cases of studies side by side, then times alone those of the studies that ask

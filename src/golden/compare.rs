@@ -4,6 +4,7 @@
 //! is dominated by them; one that pays for one with the other is a trade. A long list of differences says less than one
 //! line a kind, with what its values have in common and its largest change.
 
+use crate::case::grouping::grouped;
 use crate::golden::GoldenFile;
 use crate::golden::measure::{GoldenKey, Measure, TimeFactor};
 use oedometer_convergence::ParetoChange;
@@ -157,6 +158,31 @@ pub struct CaseChange {
 }
 
 impl CaseChange {
+    fn of(case: &str, differences: &[&Difference]) -> Self {
+        let (mut cost_ratio, mut worse, mut better, mut unpaired) = (1.0, 0, 0, 0);
+        for difference in differences {
+            match (difference.golden, difference.found) {
+                (Some(golden), Some(found)) if difference.key.measure == Measure::Steps => {
+                    cost_ratio = found / golden;
+                }
+                (Some(_), Some(_)) if matches!(difference.change, Change::Stale | Change::Smaller) => {
+                    better += 1;
+                }
+                (Some(_), Some(_)) => worse += 1,
+                _ => unpaired += 1,
+            }
+        }
+        let is_comparable = unpaired == 0 && f64::is_finite(cost_ratio);
+        let change = match (is_comparable, better > 0 || cost_ratio < 1.0, worse > 0 || cost_ratio > 1.0) {
+            (false, ..) => ParetoChange::NotComparable,
+            (_, false, false) => ParetoChange::Same,
+            (_, true, false) => ParetoChange::Better,
+            (_, true, true) => ParetoChange::Traded,
+            (_, false, true) => ParetoChange::Dominated,
+        };
+        Self { case: case.to_owned(), change, cost_ratio, worse, better, unpaired }
+    }
+
     /// Whether the golden values are to be looked at again and nothing has failed: all that changed
     /// is better, or cost was traded for accuracy throughout.
     pub fn is_stale(&self) -> bool {
@@ -172,44 +198,8 @@ impl CaseChange {
 
 /// The cases of differences, in their order.
 pub fn case_changes(differences: &[Difference]) -> Vec<CaseChange> {
-    let mut changes: Vec<CaseChange> = Vec::new();
-    for difference in differences {
-        let case = &difference.key.case;
-        let place = changes.iter().position(|change| *change.case == **case).unwrap_or_else(|| {
-            changes.push(CaseChange {
-                case: case.to_string(),
-                change: ParetoChange::Same,
-                cost_ratio: 1.0,
-                worse: 0,
-                better: 0,
-                unpaired: 0,
-            });
-            changes.len() - 1
-        });
-        let change = &mut changes[place];
-        match (difference.golden, difference.found) {
-            (Some(golden), Some(found)) if difference.key.measure == Measure::Steps => {
-                change.cost_ratio = found / golden;
-            }
-            (Some(_), Some(_)) if matches!(difference.change, Change::Stale | Change::Smaller) => {
-                change.better += 1;
-            }
-            (Some(_), Some(_)) => change.worse += 1,
-            _ => change.unpaired += 1,
-        }
-    }
-    for change in &mut changes {
-        let worse = change.worse > 0 || change.cost_ratio > 1.0;
-        let better = change.better > 0 || change.cost_ratio < 1.0;
-        change.change = match (change.unpaired > 0 || !change.cost_ratio.is_finite(), better, worse) {
-            (true, ..) => ParetoChange::NotComparable,
-            (_, false, false) => ParetoChange::Same,
-            (_, true, false) => ParetoChange::Better,
-            (_, true, true) => ParetoChange::Traded,
-            (_, false, true) => ParetoChange::Dominated,
-        };
-    }
-    changes
+    let cases = grouped(differences, |difference| &*difference.key.case);
+    cases.into_iter().map(|(case, differences)| CaseChange::of(case, &differences)).collect()
 }
 
 /// Cases that only the first of two states has, and those that only the second has, by their values.

@@ -303,7 +303,7 @@ pub fn values_of(records: &[Record]) -> BTreeMap<GoldenKey, f64> {
         let mut keep = |time: Option<f64>, measure: Measure, value: f64| {
             values.insert(GoldenKey { case: case.clone(), time: time.map(TimeFactor), measure }, value);
         };
-        if record.case.counts_work() {
+        if record.case.has_integrator() {
             keep(None, Measure::Steps, record.counters.steps as f64);
         }
         if let Some(found) = &record.stability {

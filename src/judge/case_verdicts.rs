@@ -28,11 +28,11 @@ impl CaseExpectation {
 
     fn judgement(&self, subject: String, checks: Vec<Check>) -> Judgement {
         let pass = checks.iter().all(|check| check.pass);
-        let told: Vec<&str> =
+        let reasons: Vec<&str> =
             checks.iter().filter(|check| pass || !check.pass).map(|check| check.reason.as_str()).collect();
         let classification = Classification::new(Class::NotEvaluable, "a single case is not a series");
         let outcome = if pass { VerdictOutcome::Passed } else { VerdictOutcome::Failed };
-        let verdict = Verdict { pass, outcome, reason: told.join("; "), classification, checks };
+        let verdict = Verdict { pass, outcome, reason: reasons.join("; "), classification, checks };
         Judgement { line: self.line, subject, verdict, uncertainty: None }
     }
 }
@@ -55,16 +55,16 @@ impl CaseDemand {
     /// Every part of the demand, with the comparison of a double-point case with its twin among all records.
     fn all_checks(&self, record: &Record, records: &[&Record]) -> Vec<Check> {
         let mut checks = self.checks(record);
-        checks.extend(self.one_set_within.map(|within| one_set_found(within, record, records)));
+        checks.extend(self.one_set_within.map(|within| point_sets_check(within, record, records)));
         checks
     }
 
     /// Every part of the demand, judged; comparisons are written so that NaN fails.
     fn checks(&self, record: &Record) -> Vec<Check> {
         let mut checks = Vec::new();
-        checks.extend(self.status.as_ref().map(|wanted| status_found(wanted, record)));
-        checks.extend(self.critical_step_within.map(|within| critical_step_found(within, record)));
-        checks.extend(self.error.as_ref().map(|range| error_found(range, record)));
+        checks.extend(self.status.as_ref().map(|wanted| status_check(wanted, record)));
+        checks.extend(self.critical_step_within.map(|within| critical_step_check(within, record)));
+        checks.extend(self.error.as_ref().map(|range| error_check(range, record)));
         let balance = &record.balance;
         let worst = |of: fn(&Balance) -> f64| largest(balance.iter().map(|balance| of(balance).abs()));
         // Only where every output has the balance of two point sets.
@@ -103,13 +103,13 @@ impl CaseDemand {
             ("highest pressure over the load", peak.map(|peak| peak.height), self.peak_pressure),
         ];
         let asked = ranges.into_iter().filter_map(|(what, found, bounds)| Some((what, found, bounds?)));
-        checks.extend(asked.map(|(what, found, bounds)| value_found(what, found, bounds)));
+        checks.extend(asked.map(|(what, found, bounds)| value_check(what, found, bounds)));
         checks
     }
 }
 
 /// Every error of a double-point case against that of the same case with one point set.
-fn one_set_found(within: f64, record: &Record, records: &[&Record]) -> Check {
+fn point_sets_check(within: f64, record: &Record, records: &[&Record]) -> Check {
     const NAME: &str = "one point set";
     let mut twin = record.case.clone();
     twin.column.points.sets = 1;
@@ -131,7 +131,7 @@ fn one_set_found(within: f64, record: &Record, records: &[&Record]) -> Check {
         let difference = (two.value - one.value).abs();
         // Written so that NaN fails.
         if !(is_same && difference <= within) {
-            let told = format!(
+            let statement = format!(
                 "{} {} {} at T_v = {}: {:.10e} with two point sets and {:.10e} with one,",
                 two.quantity.name(),
                 two.norm,
@@ -141,19 +141,19 @@ fn one_set_found(within: f64, record: &Record, records: &[&Record]) -> Check {
                 one.value
             );
             let allowed = format!("{} allowed", rounded(within));
-            return Check::compared(NAME, false, difference, &told, ["", "more than"], &allowed);
+            return Check::compared(NAME, false, difference, &statement, ["", "more than"], &allowed);
         }
         worst = f64::max(worst, difference);
     }
-    let told = format!("{} errors are those of one point set", record.errors.len());
-    Check::compared(NAME, true, worst, &told, ["within", ""], &rounded(worst))
+    let statement = format!("{} errors are those of one point set", record.errors.len());
+    Check::compared(NAME, true, worst, &statement, ["within", ""], &rounded(worst))
 }
 
-fn status_found(wanted: &str, record: &Record) -> Check {
+fn status_check(wanted: &str, record: &Record) -> Check {
     let complaint =
         if wanted == UNSOUND && record.status == Status::Ok { complaints(record).pop() } else { None };
     if let Some(complaint) = complaint {
-        return Check::told("status", true, format!("{UNSOUND}: {complaint}"));
+        return Check::new("status", true, format!("{UNSOUND}: {complaint}"));
     }
     let found = record.status.name();
     let how = record
@@ -162,10 +162,10 @@ fn status_found(wanted: &str, record: &Record) -> Check {
         .map_or_else(String::new, |failure| format!("{}: {}", failure.place(), failure.reason));
     let pass = found == wanted;
     let instead = if pass { String::new() } else { format!(" instead of {wanted}") };
-    Check::told("status", pass, format!("{found}{instead}{how}"))
+    Check::new("status", pass, format!("{found}{instead}{how}"))
 }
 
-fn critical_step_found(within: f64, record: &Record) -> Check {
+fn critical_step_check(within: f64, record: &Record) -> Check {
     const NAME: &str = "critical step";
     let Some(found) = &record.stability else {
         return Check::failed(NAME, "the critical step was not searched");
@@ -191,12 +191,12 @@ fn critical_step_found(within: f64, record: &Record) -> Check {
         Some(resolution) => format!("within {:.2} % of", 100.0 * resolution),
         None => format!("{:+.2} % off", 100.0 * deviation),
     };
-    let told =
+    let statement =
         format!("observed {off} the predicted {:.4e} s, {} % allowed;", found.predicted, 100.0 * within);
-    Check::compared(NAME, pass, deviation, &told, ["with", "with"], &probes.join(", "))
+    Check::compared(NAME, pass, deviation, &statement, ["with", "with"], &probes.join(", "))
 }
 
-fn error_found(range: &ErrorRange, record: &Record) -> Check {
+fn error_check(range: &ErrorRange, record: &Record) -> Check {
     let own = if range.any_places { range.measure.at_places_of(record) } else { range.measure.clone() };
     let measure = &own;
     let time = typed(measure.time_factor);
@@ -209,7 +209,7 @@ fn error_found(range: &ErrorRange, record: &Record) -> Check {
     };
     let (quantity, sample) = (measure.quantity.name(), measure.sample.name());
     let what = format!("{quantity} {} {sample} at T_v = {time}", measure.norm);
-    let found = value_found(&what, Some(row.value.abs()), range.bounds);
+    let found = value_check(&what, Some(row.value.abs()), range.bounds);
     let mut check = Check { name: "error".to_owned(), ..found };
     if let Some(place) = place_in_kept(record, row).filter(|_| !check.pass) {
         check.reason = format!("{}; {place}", check.reason);
@@ -218,19 +218,19 @@ fn error_found(range: &ErrorRange, record: &Record) -> Check {
 }
 
 /// A value in a range whose lower end belongs to it.
-fn value_found(what: &str, found: Option<f64>, Bounds { above, below }: Bounds) -> Check {
+fn value_check(what: &str, found: Option<f64>, Bounds { above, below }: Bounds) -> Check {
     let Some(value) = found else {
         return Check::failed(what, format!("no {what} was measured"));
     };
     let pass = value < below && value >= above;
-    let told = format!("{what}: {}", rounded(value));
+    let statement = format!("{what}: {}", rounded(value));
     if above == 0.0 && (value.is_nan() || value >= 0.0) {
-        return Check::compared(what, pass, value, &told, BELOW, &rounded(below));
+        return Check::compared(what, pass, value, &statement, BELOW, &rounded(below));
     }
     if below == f64::MAX {
-        return Check::compared(what, pass, value, &told, ["at least", "less than"], &rounded(above));
+        return Check::compared(what, pass, value, &statement, ["at least", "less than"], &rounded(above));
     }
-    Check::compared(what, pass, value, &told, IN, &format!("{} … {}", rounded(above), rounded(below)))
+    Check::compared(what, pass, value, &statement, IN, &format!("{} … {}", rounded(above), rounded(below)))
 }
 
 #[cfg(test)]

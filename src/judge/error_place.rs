@@ -3,6 +3,7 @@
 use crate::measure::fields::{exact_samples, largest_contribution};
 use crate::measure::theory::known_reference;
 use crate::record::{ErrorRow, Record};
+use crate::render::number;
 use oedometer_exact::{ExactError, ReferenceKind};
 use oedometer_wording::{rounded, typed};
 
@@ -50,14 +51,14 @@ pub fn place_in_kept(record: &Record, row: &ErrorRow) -> Option<String> {
     }
     let place = place_of(record, row).ok()??;
     Some(format!(
-        "most of the error of {} at T_v = {} lies at ζ = {} (height {} m): {} for {}, {:.0} % of the squared error",
+        "most of the error of {} at T_v = {} lies at ζ = {} (height {} m): {} for {}, {} of the squared error",
         row.quantity.name(),
         typed(row.time_factor),
         rounded(place.zeta),
         rounded((1.0 - place.zeta) * record.case.column.height),
         rounded(place.computed),
         rounded(place.exact),
-        100.0 * place.share
+        number::rounded_percent(place.share)
     ))
 }
 

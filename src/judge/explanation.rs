@@ -1,10 +1,10 @@
 //! Explains the error of one case: the dominant norm and place, and changes from the golden values.
 
 use crate::case::Norm;
+use crate::case::grouping::grouped;
 use crate::golden::compare::{Difference, compare};
 use crate::golden::{GoldenFile, values_of};
 use crate::judge::error_place::{ErrorPlace, place_of};
-use crate::judge::paths::grouped;
 use crate::record::{ErrorRow, Record};
 use oedometer_exact::ExactError;
 

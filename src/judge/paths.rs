@@ -1,6 +1,6 @@
 //! Groups the records of a study into paths along an axis, with their series of errors.
 
-pub(crate) use crate::case::grouping::grouped;
+use crate::case::grouping::grouped;
 use crate::case::{Quantity, Sample};
 use crate::judge::error_place::place_in_kept;
 use crate::measure::fields::relative_error;

@@ -3,6 +3,7 @@
 
 use crate::campaign::runner::RunError;
 use crate::campaign::taken_over::TakenOver;
+use crate::case::grouping::grouped;
 use crate::case::{Case, Tier};
 use crate::foreign::reading::mapping_of;
 use crate::golden::compare::{
@@ -14,7 +15,7 @@ use crate::golden::{GoldenError, GoldenFile, values_of};
 use crate::import::SampledState;
 use crate::import::mapping::Axes;
 use crate::judge::error_place::place_in_kept;
-use crate::judge::paths::{StudyPaths, grouped};
+use crate::judge::paths::StudyPaths;
 use crate::judge::proposals::proposals;
 use crate::judge::verdict::{Absent, Judgement, VerdictOutcome, differing_repeats, judge_paths};
 use crate::measure::soundness::{self, PoorOutput};

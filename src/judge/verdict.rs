@@ -7,6 +7,7 @@ use crate::case::{Case, Tier};
 use crate::golden::GoldenFile;
 use crate::judge::paths::{Path, StudyPaths};
 use crate::record::Record;
+use crate::render::number;
 use crate::study::check::Study;
 use crate::study::expectation::{CaseExpectation, Measure, SeriesExpectation};
 use oedometer_convergence::{
@@ -90,14 +91,14 @@ pub fn judge(
         checks.push(rows(series, expectation.class));
     }
     let class = expectation.expected_class();
-    checks.extend(class.map(|class| class_found(class, &classification, series)));
-    checks.extend(expectation.order.map(|band| order_found(band, class, &classification)));
-    checks.extend(expectation.at.map(|bound| error_found(bound, series)));
-    checks.extend(expectation.spread.map(|bound| spread_found(bound, series)));
-    checks.extend(expectation.floor.map(|band| floor_found(band, series, formal_order, &classification)));
-    checks.extend(expectation.oscillation_below.map(|bound| oscillation_found(bound, beside.oscillation)));
+    checks.extend(class.map(|class| class_check(class, &classification, series)));
+    checks.extend(expectation.order.map(|band| order_check(band, class, &classification)));
+    checks.extend(expectation.at.map(|bound| error_check(bound, series)));
+    checks.extend(expectation.spread.map(|bound| spread_check(bound, series)));
+    checks.extend(expectation.floor.map(|band| floor_check(band, series, formal_order, &classification)));
+    checks.extend(expectation.oscillation_below.map(|bound| oscillation_check(bound, beside.oscillation)));
     checks.extend(
-        expectation.uncertainty_below.map(|bound| uncertainty_found(bound, beside.uncertainty.as_ref())),
+        expectation.uncertainty_below.map(|bound| uncertainty_check(bound, beside.uncertainty.as_ref())),
     );
     let (outcome, reason) = conclude(expectation, &classification, &checks, problems.is_empty());
     let pass = matches!(outcome, VerdictOutcome::Passed | VerdictOutcome::KnownFailure);
@@ -139,27 +140,27 @@ fn conclude(
 impl Check {
     /// A check that fails because there is nothing to judge.
     pub(crate) fn failed(name: &str, reason: impl Into<String>) -> Self {
-        Self::told(name, false, reason)
+        Self::new(name, false, reason)
     }
 
     /// A check of something that is no number.
-    pub(crate) fn told(name: &str, pass: bool, reason: impl Into<String>) -> Self {
+    pub(crate) fn new(name: &str, pass: bool, reason: impl Into<String>) -> Self {
         Self { name: name.to_owned(), pass, measured: None, reason: reason.into(), follows: false }
     }
 
-    /// A number that was compared with bounds: `told`, one of the words for pass and failure, `bounds`.
+    /// A number that was compared with bounds: `statement`, one of the words for pass and failure, `bounds`.
     pub(crate) fn compared(
         name: &str,
         pass: bool,
         measured: f64,
-        told: &str,
+        statement: &str,
         words: [&str; 2],
         bounds: &str,
     ) -> Self {
         let word = words[usize::from(!pass)];
         let measured = Some(measured).filter(|value| value.is_finite());
-        let reason = format!("{told} {word} {bounds}");
-        Self { measured, ..Self::told(name, pass, reason) }
+        let reason = format!("{statement} {word} {bounds}");
+        Self { measured, ..Self::new(name, pass, reason) }
     }
 }
 
@@ -180,11 +181,11 @@ fn rows(series: &ErrorSeries, class: Option<Class>) -> Check {
     match obstacle {
         _ if levels.is_empty() => Check::failed("rows", "there are no rows"),
         Some(obstacle) => Check::failed("rows", obstacle.to_string()),
-        None => Check::told("rows", true, format!("{} levels", levels.len())),
+        None => Check::new("rows", true, format!("{} levels", levels.len())),
     }
 }
 
-fn class_found(wanted: Class, found: &Classification, series: &ErrorSeries) -> Check {
+fn class_check(wanted: Class, found: &Classification, series: &ErrorSeries) -> Check {
     let pass = found.class == wanted;
     let reason = if pass {
         format!("{}: {}", found.class, found.reason)
@@ -202,15 +203,15 @@ fn class_found(wanted: Class, found: &Classification, series: &ErrorSeries) -> C
         };
         format!("{}, expected {wanted}: {}{advice}{errors}", found.class, found.reason)
     };
-    Check::told("class", pass, reason)
+    Check::new("class", pass, reason)
 }
 
-fn order_found(band: OrderBand, class: Option<Class>, found: &Classification) -> Check {
+fn order_check(band: OrderBand, class: Option<Class>, found: &Classification) -> Check {
     let limits = format!("{} … {}", order(band.value - band.minus), order(band.value + band.plus));
     match found.order {
         Some(measured) if class == Some(found.class) => {
-            let told = format!("order {}", order(measured));
-            Check::compared("order", band.contains(measured), measured, &told, IN, &limits)
+            let statement = format!("order {}", order(measured));
+            Check::compared("order", band.contains(measured), measured, &statement, IN, &limits)
         }
         // That the class is another one is said by its own check.
         _ if class.is_some_and(|class| class != found.class) => {
@@ -223,7 +224,7 @@ fn order_found(band: OrderBand, class: Option<Class>, found: &Classification) ->
     }
 }
 
-fn error_found(bound: ErrorBound, series: &ErrorSeries) -> Check {
+fn error_check(bound: ErrorBound, series: &ErrorSeries) -> Check {
     let [size, above, below] = [bound.size, bound.above, bound.below].map(rounded);
     let Some(found) = series.at(bound.size) else {
         return Check::failed("error", format!("there is no level of size {size}"));
@@ -232,18 +233,25 @@ fn error_found(bound: ErrorBound, series: &ErrorSeries) -> Check {
         Err(undefined) => Check::failed("error", undefined.to_string()),
         Ok(error) => {
             let pass = error < bound.below && error >= bound.above;
-            let told = format!("error {} at size {size}", rounded(error));
+            let statement = format!("error {} at size {size}", rounded(error));
             if error < bound.above {
                 let words = ["", "suspiciously small: expected between"];
-                return Check::compared("error", pass, error, &told, words, &format!("{above} and {below}"));
+                return Check::compared(
+                    "error",
+                    pass,
+                    error,
+                    &statement,
+                    words,
+                    &format!("{above} and {below}"),
+                );
             }
-            Check::compared("error", pass, error, &told, BELOW, &below)
+            Check::compared("error", pass, error, &statement, BELOW, &below)
         }
     }
 }
 
 /// How far the errors of the levels up to a size lie apart.
-fn spread_found(bound: ErrorBound, series: &ErrorSeries) -> Check {
+fn spread_check(bound: ErrorBound, series: &ErrorSeries) -> Check {
     let counted: Vec<f64> = series
         .levels()
         .iter()
@@ -259,12 +267,11 @@ fn spread_found(bound: ErrorBound, series: &ErrorSeries) -> Check {
     let largest = counted.iter().copied().fold(0.0, f64::max);
     let smallest = counted.iter().copied().fold(f64::INFINITY, f64::min);
     let spread = largest / smallest - 1.0;
-    let told = format!("errors of {count} levels lie within {:.3} %,", 100.0 * spread);
-    let limit = format!("{} %", rounded(100.0 * bound.below));
-    Check::compared("spread", spread < bound.below, spread, &told, BELOW, &limit)
+    let statement = format!("errors of {count} levels lie within {:.3} %,", 100.0 * spread);
+    Check::compared("spread", spread < bound.below, spread, &statement, BELOW, &number::bound(bound.below))
 }
 
-fn floor_found(band: FloorBand, series: &ErrorSeries, formal: Option<f64>, found: &Classification) -> Check {
+fn floor_check(band: FloorBand, series: &ErrorSeries, formal: Option<f64>, found: &Classification) -> Check {
     let without = [Class::NotEvaluable, Class::Divergent, Class::Oscillatory];
     if without.contains(&found.class) {
         return Check::failed("floor", format!("no error plateau to judge: the series is {}", found.class));
@@ -291,15 +298,15 @@ fn floor_found(band: FloorBand, series: &ErrorSeries, formal: Option<f64>, found
     )
 }
 
-fn oscillation_found(bound: f64, oscillation: Option<f64>) -> Check {
+fn oscillation_check(bound: f64, oscillation: Option<f64>) -> Check {
     let Some(index) = oscillation.filter(|index| index.is_finite()) else {
         return Check::failed("oscillation", "the oscillation was not measured");
     };
-    let told = format!("oscillation {}", rounded(index));
-    Check::compared("oscillation", index < bound, index, &told, BELOW, &rounded(bound))
+    let statement = format!("oscillation {}", rounded(index));
+    Check::compared("oscillation", index < bound, index, &statement, BELOW, &rounded(bound))
 }
 
-fn uncertainty_found(bound: f64, found: Option<&Result<NumericalUncertainty, Undefined>>) -> Check {
+fn uncertainty_check(bound: f64, found: Option<&Result<NumericalUncertainty, Undefined>>) -> Check {
     let failed = |reason: &str| Check::failed("uncertainty", reason);
     match found {
         None => failed("the uncertainty was not measured"),
@@ -309,13 +316,13 @@ fn uncertainty_found(bound: f64, found: Option<&Result<NumericalUncertainty, Und
         }
         Some(Ok(found)) => {
             let relative = found.relative();
-            let told = format!(
+            let statement = format!(
                 "uncertainty {} of the value {} by {}",
                 rounded(relative),
                 rounded(found.finest()),
                 found.estimator.name()
             );
-            Check::compared("uncertainty", relative < bound, relative, &told, BELOW, &rounded(bound))
+            Check::compared("uncertainty", relative < bound, relative, &statement, BELOW, &rounded(bound))
         }
     }
 }
@@ -451,8 +458,8 @@ impl<'a> Absent<'a> {
 /// One sentence for each case whose solver gives different results when repeated.
 pub fn differing_repeats(records: &[Record]) -> Vec<String> {
     let note = |record: &Record| {
-        let told = record.outside_run()?.notes.first()?;
-        Some(format!("{}: {told}", record.case.label()))
+        let note = record.outside_run()?.notes.first()?;
+        Some(format!("{}: {note}", record.case.label()))
     };
     records.iter().filter_map(note).collect()
 }

@@ -1,8 +1,9 @@
 //! Are the published equations right? Each pairing of stress–strain law and continuity against Xie & Leo's solution: over time
 //! on one mesh, and over the mesh at one time, where right equations converge and wrong ones do not.
 
+use crate::case::grouping::grouped;
 use crate::case::{Case, Quantity, Sample};
-use crate::judge::paths::{Path, first_measure, grouped};
+use crate::judge::paths::{Path, first_measure};
 use crate::judge::study_results::StudyResults;
 use crate::questions::finding::{Finding, Place, Question, best};
 use crate::questions::words;

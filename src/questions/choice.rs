@@ -224,13 +224,7 @@ pub fn facts(race: &RaceFindings) -> Facts {
 
 /// Methods that may run in some problem.
 fn methods(race: &RaceFindings) -> Vec<&str> {
-    let mut methods: Vec<&str> = Vec::new();
-    for entry in race.situations.iter().flat_map(|one| &one.entries) {
-        if !methods.contains(&entry.contender.as_str()) {
-            methods.push(&entry.contender);
-        }
-    }
-    methods
+    distinct(race.situations.iter().flat_map(|one| &one.entries).map(|entry| entry.contender.as_str()))
 }
 
 fn group_answers(race: &RaceFindings) -> Vec<GroupAnswer> {

@@ -2,8 +2,9 @@
 //! and at large strain.
 
 use crate::case::contender::PAPERS;
+use crate::case::grouping::grouped;
 use crate::case::{Case, Quantity, Sample};
-use crate::judge::paths::{Path, grouped};
+use crate::judge::paths::Path;
 use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::larger;
 use crate::questions::finding::{Finding, Place, Question, best};

@@ -1,7 +1,7 @@
 //! What does accuracy cost? Runs by error and counted work, and the cheapest within each tolerance.
 
 use crate::case::IntegratorKind;
-use crate::case::grouping::distinct;
+use crate::case::grouping::{distinct, grouped};
 use crate::judge::study_results::StudyResults;
 use crate::questions::finding::{Finding, Place, Question, best};
 use crate::questions::words::COUNTED_WORK;
@@ -88,7 +88,7 @@ fn answer(study: &str, precision: &WorkPrecision<'_>) -> Option<Finding> {
 fn title_of(precision: &WorkPrecision<'_>) -> String {
     let runs = precision.cheapest.iter().filter_map(|one| Some((one.tolerance, one.run.as_ref()?)));
     let least = runs.map(|(tolerance, run)| (run.record.case.method.to_string(), number::bound(tolerance)));
-    let groups = crate::case::grouping::grouped(least, |(method, _)| method.clone()).into_iter();
+    let groups = grouped(least, |(method, _)| method.clone()).into_iter();
     let told = groups.map(|(method, within)| {
         let within: Vec<String> = within.into_iter().map(|(_, tolerance)| tolerance).collect();
         format!("{method} to {}", within.join(", "))

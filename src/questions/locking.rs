@@ -76,9 +76,9 @@ fn keeps(row: &SweepRow) -> bool {
 fn table(rows: &[&SweepRow], ratios: &[f64]) -> Table {
     let last = ratios.len() - 1;
     let [least, most] = [0, last].map(|place| typed(ratios[place]));
-    let limit = number::rounded(100.0 * KEPT);
+    let limit = number::bound(KEPT);
     let header = format!(
-        "method | above {limit} % | > displacement, ν = {least} | > ν = {most} | > pressure, ν = {least} | > ν = {most}"
+        "method | above {limit} | > displacement, ν = {least} | > ν = {most} | > pressure, ν = {least} | > ν = {most}"
     );
     let cells = rows.iter().map(|row| {
         let ([u_least, p_least], [u_most, p_most]) = (row.found[0], row.found[last]);
@@ -109,11 +109,7 @@ fn loss(row: &SweepRow, ratios: &[f64]) -> Cell {
 fn title_of(rows: &[&SweepRow]) -> String {
     let is_kept = |errors: &[Option<f64>; 2]| errors[1].is_some_and(|error| error < KEPT);
     let kept = rows.iter().filter(|row| row.found.iter().all(is_kept)).count();
-    format!(
-        "{kept} of {} methods keep the pressure at the points within {} %",
-        rows.len(),
-        number::rounded(100.0 * KEPT)
-    )
+    format!("{kept} of {} methods keep the pressure at the points within {}", rows.len(), number::bound(KEPT))
 }
 
 /// The error of the pressure of all methods over a ratio spaced as 1 − 2ν.

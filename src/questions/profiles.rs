@@ -1,7 +1,8 @@
 //! How does the pressure fall? Isochrones of the pore pressure and the degree of consolidation of a column beside theory's.
 
+use crate::case::grouping::grouped;
 use crate::case::quantity::{Quantity, Sample};
-use crate::judge::paths::{first_error, first_measure, grouped};
+use crate::judge::paths::{first_error, first_measure};
 use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::largest;
 use crate::measure::theory::{

@@ -1,8 +1,9 @@
 //! Errors over levels of refinement: the series of several paths side by side, from which every table and figure is written.
 
+use crate::case::grouping::grouped;
 use crate::case::{Quantity, Sample};
 use crate::judge::path_labels::path_labels;
-use crate::judge::paths::{Path, SeriesSummary, common_times, first_measure, grouped, level_size};
+use crate::judge::paths::{Path, SeriesSummary, common_times, first_measure, level_size};
 use crate::judge::study_results::StudyResults;
 use crate::questions::words;
 use crate::record::Record;

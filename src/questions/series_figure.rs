@@ -2,7 +2,7 @@
 //! floor that they share.
 
 use crate::case::Sample;
-use crate::case::grouping::grouped;
+use crate::case::grouping::{distinct, grouped};
 use crate::questions::series::{Measured, Series, SeriesTable};
 use crate::questions::words;
 use crate::render::chart::{self, Chart, ChartAxis, Rule, Size};
@@ -27,8 +27,7 @@ const MOST_LINES: [usize; 2] = [14, 60];
 /// A figure per error of a table, side by side; none where no path has three levels.
 pub fn figures(found: &SeriesTable<'_>) -> Vec<Figure> {
     let asked = found.series.iter().map(|one| one.measured);
-    let asked: Vec<Measured> =
-        crate::case::grouping::distinct(asked.filter(|(_, sample)| *sample != Sample::Nodes));
+    let asked: Vec<Measured> = distinct(asked.filter(|(_, sample)| *sample != Sample::Nodes));
     asked.into_iter().filter_map(|measured| figure(found, measured)).collect()
 }
 

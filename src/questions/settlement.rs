@@ -1,8 +1,8 @@
 //! How does the surface settle by date? Settlements at the outputs of a study, exact and of the run that its answer names: what
 //! an engineer looks up by date.
 
+use crate::case::grouping::grouped;
 use crate::case::{Norm, Quantity, Sample};
-use crate::judge::paths::grouped;
 use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::larger;
 use crate::measure::theory::known_reference;

@@ -1,7 +1,8 @@
 //! Errors of the methods over Poisson's ratio of the skeleton at the last output.
 
+use crate::case::grouping::grouped;
 use crate::case::{Quantity, Sample, SolverName};
-use crate::judge::paths::{first_error, grouped};
+use crate::judge::paths::first_error;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
 use oedometer_problem::outcome::Failure;

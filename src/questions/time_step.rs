@@ -1,7 +1,7 @@
 //! What does the time step change? The errors over the step, the order in it, and from where on it is unstable.
 
+use crate::case::grouping::grouped;
 use crate::case::{Quantity, Sample};
-use crate::judge::paths::grouped;
 use crate::judge::study_results::StudyResults;
 use crate::questions::finding::{Finding, Place, Question, best};
 use crate::questions::series::{LevelError, Series, SeriesTable, name_of_level};

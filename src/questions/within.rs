@@ -1,9 +1,8 @@
 //! What reaches a bound: for each quantity the cheapest choice of method, mesh and step whose error stays within it at every
 //! output, in every problem of the study, on this mesh and all finer ones.
 
-use crate::case::grouping::distinct;
+use crate::case::grouping::{distinct, grouped};
 use crate::case::{Case, Quantity, Sample};
-use crate::judge::paths::grouped;
 use crate::judge::recommendation::QuotedRuns;
 use crate::judge::study_results::StudyResults;
 use crate::questions::finding::{Finding, Place, Question};
@@ -284,11 +283,11 @@ impl WithinFinding {
         Self {
             quantity: row.quantity,
             method: case.method.to_string(),
-            integrator: if case.counts_work() { case.integrator.name() } else { "" },
+            integrator: if case.has_integrator() { case.integrator.name() } else { "" },
             cells: case.cells,
             points_per_cell: case.points_per_cell,
             has_other_points: false,
-            largest_step: if case.counts_work() { record.step_sizes.largest } else { 0.0 },
+            largest_step: if case.has_integrator() { record.step_sizes.largest } else { 0.0 },
             is_longest_tried: false,
             is_confirmed: false,
             error: row.value.abs(),
@@ -296,7 +295,7 @@ impl WithinFinding {
             factor_name: case.scene.clock.factor_name(),
             seconds: row.time_factor * case.seconds_per_time_factor(),
             // What another program costs is not counted.
-            cost: if case.counts_work() { cost_of(record) } else { 0.0 },
+            cost: if case.has_integrator() { cost_of(record) } else { 0.0 },
             case: record.hash.clone(),
         }
     }

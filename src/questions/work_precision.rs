@@ -1,7 +1,8 @@
 //! Runs of a study by error and counted work: the fronts of methods, and the cheapest within each tolerance.
 
+use crate::case::grouping::grouped;
 use crate::case::{Quantity, SolverName};
-use crate::judge::paths::{first_error, grouped};
+use crate::judge::paths::first_error;
 use crate::judge::recommendation::QuotedRuns;
 use crate::measure::statistics::largest;
 use crate::record::calibration::cost_of;
@@ -88,8 +89,9 @@ impl<'a> WorkPrecision<'a> {
 }
 
 fn costed<'a>(record: &'a Record, reference: &str) -> Option<CostedRun<'a>> {
-    let error = worst_error(record, reference)
-        .filter(|_| record.status == Status::Ok && record.stability.is_none() && record.case.counts_work())?;
+    let error = worst_error(record, reference).filter(|_| {
+        record.status == Status::Ok && record.stability.is_none() && record.case.has_integrator()
+    })?;
     Some(CostedRun { record, error, work: cost_of(record) })
 }
 

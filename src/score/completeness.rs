@@ -1,6 +1,6 @@
 //! Whether an external result is complete: missing parts make an error small.
 
-use crate::import::SampledState;
+use crate::import::{RIM, SampledState};
 use crate::measure::fields::{ExactFields, resolution};
 use crate::score::coverage;
 use crate::score::coverage::{Bare, End};
@@ -11,8 +11,6 @@ use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
 use oedometer_soil::elementary::ln;
 use oedometer_wording::{count_of, rounded, typed, words};
 
-/// Share of the height within which a sample lies on the surface or the base.
-const RIM: f64 = 1e-6;
 /// Share by which volumes may differ beyond what consolidation explains: round-off of written
 /// numbers.
 const VOLUME: f64 = 1e-3;

@@ -19,10 +19,6 @@ use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind, Te
 use oedometer_wording::rounded;
 use std::borrow::Cow;
 
-/// Share of the height, and of the length, within which a sample counts as at the surface, and as
-/// under the crest.
-const RIM: f64 = 1e-6;
-
 /// Multiple of the load, of the final settlement, or of the largest exact value that no correct result reaches.
 const IMPOSSIBLE: f64 = 100.0;
 
@@ -340,18 +336,15 @@ impl ScoredState<'_> {
         if state.surface_displacement.is_some() || mean_or_plate.contains(&self.reference.kind()) {
             return state.surface_displacement;
         }
-        let is_at_surface = |place: &usize| {
-            state.initial_height[*place] > (1.0 - RIM) * parameters.height
-                && (!self.reference.is_plane() || state.initial_distance[*place] < RIM * parameters.length)
-        };
-        let place = (0..state.initial_height.len()).find(is_at_surface)?;
-        state.displacement.get(place).copied()
+        let length = self.reference.is_plane().then_some(parameters.length);
+        state.displacement_at_surface(parameters.height, length)
     }
 }
 
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::import::RIM;
 
     /// The exact fields on places, the pressure off by `error(ζ)`.
     pub(crate) fn state(places: usize, time_factor: f64, error: impl Fn(f64) -> f64) -> SampledState {

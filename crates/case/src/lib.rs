@@ -141,14 +141,9 @@ impl Case {
         case.number()
     }
 
-    /// Whether an integrator of this program solves it, by steps and points that are known.
+    /// Whether an integrator of this program solves it, by steps and points that are known and with work that is counted.
     pub fn has_integrator(&self) -> bool {
         self.method.built_in().is_some()
-    }
-
-    /// Whether its work is counted, and can be estimated.
-    pub fn counts_work(&self) -> bool {
-        self.has_integrator()
     }
 
     /// Configuration of the shape functions of this program's method: the method's own, or the scene's.
@@ -235,13 +230,6 @@ impl Case {
     /// Whether it is integrated explicitly.
     pub fn is_explicit(&self) -> bool {
         self.integrator == IntegratorKind::Explicit
-    }
-
-    /// Whether water and skeleton are as compressible as the seed's: not a step towards incompressibility.
-    pub fn has_usual_compressibility(&self) -> bool {
-        let seed = (self.scene.soil)();
-        self.material.water_bulk_modulus == seed.water_bulk_modulus
-            && self.material.poissons_ratio == seed.poissons_ratio
     }
 
     /// Its soils with their thicknesses, m, from the base up: one, or those of its layers.

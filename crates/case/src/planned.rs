@@ -63,11 +63,6 @@ impl Planner {
 pub struct Shared<T>(Arc<T>);
 
 impl<T> Shared<T> {
-    /// Whether two are one value in memory.
-    pub fn is_one_with(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
-    }
-
     /// Makes it one with an equal value.
     pub fn share_with(&mut self, other: &Self)
     where
@@ -137,6 +132,10 @@ mod tests {
     use oedometer_scenes::TERZAGHI;
     use oedometer_soil::material::Material;
 
+    fn are_one<T>(first: &Shared<T>, other: &Shared<T>) -> bool {
+        Arc::ptr_eq(&first.0, &other.0)
+    }
+
     #[test]
     fn cases_are_planned_once_and_share_what_they_have_in_common() {
         let case = |cells, porosity| {
@@ -163,10 +162,8 @@ mod tests {
         );
         let [first, other, third] = [0, 1, 2].map(|place| &planned[place].case);
         assert_eq!(*first, case(2, 0.3));
-        assert!(first.column.is_one_with(&third.column) && !first.material.is_one_with(&other.material));
-        assert!(
-            first.column.is_one_with(&other.column) && first.time_factors.is_one_with(&other.time_factors)
-        );
+        assert!(are_one(&first.column, &third.column) && !are_one(&first.material, &other.material));
+        assert!(are_one(&first.column, &other.column) && are_one(&first.time_factors, &other.time_factors));
     }
 
     #[test]
@@ -180,10 +177,10 @@ mod tests {
     fn changing_a_copy_leaves_the_others_unchanged() {
         let first = Shared::from(Material::default());
         let mut other = first.clone();
-        assert!(other.is_one_with(&first));
+        assert!(are_one(&other, &first));
         other.porosity = 0.4;
         assert_eq!((first.porosity, other.porosity), (Material::default().porosity, 0.4));
-        assert!(!other.is_one_with(&first) && other != first);
+        assert!(!are_one(&other, &first) && other != first);
     }
 
     #[test]
@@ -192,7 +189,7 @@ mod tests {
         let [mut equal, mut other] = [0.3, 0.4].map(|porosity| Shared::from(Material { porosity, ..*first }));
         equal.share_with(&first);
         other.share_with(&first);
-        assert!(equal.is_one_with(&first) && !other.is_one_with(&first));
+        assert!(are_one(&equal, &first) && !are_one(&other, &first));
         assert_eq!(other.porosity, 0.4);
     }
 

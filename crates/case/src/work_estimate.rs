@@ -38,7 +38,7 @@ const UNKNOWN_SECONDS: f64 = 5.0;
 
 /// Time that a case will take on one core of the machine that [`seconds_per_step`] was measured on, s.
 pub fn estimated_seconds(case: &Case) -> f64 {
-    if !case.counts_work() {
+    if !case.has_integrator() {
         return UNKNOWN_SECONDS;
     }
     CASE_SECONDS + estimated_steps(case) * seconds_per_step(case)

@@ -23,8 +23,6 @@ use std::path::PathBuf;
 use std::sync::{Condvar, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
-/// Share of the height within which a sample counts as at the surface, and of the length as under the crest.
-const RIM: f64 = 1e-6;
 /// Longest time limit, s: a century.
 const MOST_SECONDS: f64 = 3e9;
 /// Notes on what was taken from where that are kept.
@@ -403,21 +401,11 @@ fn snapshot_of(case: &Case, sample: Sample, state: &SampledState) -> Snapshot {
 
 /// The settlement that a state shows, m: of a curve, or of a sample at the surface.
 fn settlement_in(case: &Case, state: &SampledState) -> Option<f64> {
-    let is_at_surface = |place: &usize| {
-        let column = &case.column;
-        state.initial_height[*place] > (1.0 - RIM) * column.height
-            && state
-                .initial_distance
-                .get(*place)
-                .is_none_or(|distance| !case.scene.body.is_plane() || *distance < RIM * column.extent())
-    };
-    let at_surface = || {
-        let place = (0..state.initial_height.len()).find(is_at_surface)?;
-        state.displacement.get(place).copied()
-    };
+    let (height, body) = (case.column.height, case.scene.body);
+    let length = body.is_plane().then(|| case.column.extent());
     // The settlement of a slab is its plate's, which presses across.
-    let surface =
-        state.surface_displacement.or_else(|| at_surface().filter(|_| case.scene.body != Body::Slab));
+    let of_sample = || state.displacement_at_surface(height, length).filter(|_| body != Body::Slab);
+    let surface = state.surface_displacement.or_else(of_sample);
     surface.map(|up| -up)
 }
 

@@ -318,11 +318,6 @@ impl Method {
         configuration: None,
     };
 
-    /// Whether every point takes the pressure of its cell's centre: reduced integration without recovery.
-    pub fn has_constant_recovery(&self) -> bool {
-        self.pressure == PressureIntegration::Sri && self.recovery == Recovery::Constant
-    }
-
     /// The method of a name, bare, with the prefix `u` for fixed domains, with the prefix `TL-` for
     /// shape functions on the initial configuration, with the suffix `-cells` for the cell-averaged projection, or with
     /// the suffix `-moments` for moment-fitted volumes.

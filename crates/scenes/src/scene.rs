@@ -221,11 +221,6 @@ impl Clock {
     pub fn factor_name(self) -> &'static str {
         if self == Self::Push { "u/B" } else { "T_v" }
     }
-
-    /// Whether a time factor of one is a time that consolidation takes.
-    pub fn counts_consolidation(self) -> bool {
-        matches!(self, Self::Consolidation | Self::HalfSpace)
-    }
 }
 
 /// A reference that holds for a scene.

@@ -35,7 +35,7 @@ fn an_error_is_held_from_both_sides_and_a_missing_one_fails() {
     };
     let error = row.value.abs();
     let found = |record: &Record, above: f64, below: f64| {
-        error_found(
+        error_check(
             &ErrorRange { measure: measure.clone(), any_places: false, bounds: Bounds { above, below } },
             record,
         )
@@ -141,7 +141,7 @@ fn a_value_that_is_missing_or_no_number_is_in_no_range() {
     for (found, passes) in
         [(Some(1.0), true), (Some(2.0), false), (Some(0.9), false), (Some(f64::NAN), false), (None, false)]
     {
-        assert_eq!(value_found("velocity", found, bounds).pass, passes, "{found:?}");
+        assert_eq!(value_check("velocity", found, bounds).pass, passes, "{found:?}");
     }
 }
 
@@ -184,7 +184,7 @@ fn a_critical_step_is_met_where_it_is_near_and_both_probes_end_as_predicted() {
             probes: vec![probe(0.97, fails[0]), probe(1.03, fails[1])],
             ..CriticalStep::default()
         });
-        let check = critical_step_found(0.02, &record);
+        let check = critical_step_check(0.02, &record);
         let ends = fails.map(|fails| if fails { "is unstable at step 90" } else { "runs 100 steps" });
         let told = match observed {
             None => "no step was observed to become unstable".to_owned(),
@@ -207,7 +207,7 @@ fn a_critical_step_is_met_where_it_is_near_and_both_probes_end_as_predicted() {
 
 #[test]
 fn a_value_under_a_range_from_nothing_on_lies_outside_of_it() {
-    let told = |value: f64| value_found("x", Some(value), Bounds { above: 0.0, below: 0.5 }).reason;
+    let told = |value: f64| value_check("x", Some(value), Bounds { above: 0.0, below: 0.5 }).reason;
     assert_eq!(told(-0.25), "x: -0.25 outside 0 … 0.5");
     assert_eq!(told(0.75), "x: 0.75 not below 0.5");
     assert_eq!(told(0.0), "x: 0 below 0.5");
@@ -287,7 +287,7 @@ fn every_demand_of_a_case_says_in_its_own_words_what_was_found() {
     record.snapshots.iter_mut().for_each(|snapshot| snapshot.centres.pressure.fill(0.5));
     let missing: Vec<String> = told(&met, &record).into_iter().skip(2).map(|one| one.2).collect();
     assert_eq!(missing, [2, 3, 4, 5, 6, 7].map(|number| format!("no {} was measured", words[number].0)));
-    assert_eq!(critical_step_found(0.1, &record).reason, "the critical step was not searched");
+    assert_eq!(critical_step_check(0.1, &record).reason, "the critical step was not searched");
 }
 
 #[test]
@@ -374,7 +374,7 @@ fn errors_beside_those_of_one_set_are_told_with_both_numbers() {
             let kinds = [Quantity::Pressure, Quantity::Displacement];
             record.errors = kinds.into_iter().zip(values).map(|(kind, value)| row(kind, value)).collect();
         }
-        let check = one_set_found(1e-9, &records[1], &[&records[0], &records[1]]);
+        let check = point_sets_check(1e-9, &records[1], &[&records[0], &records[1]]);
         (check.pass, check.reason)
     };
     let all = "2 errors are those of one point set within";
@@ -385,7 +385,7 @@ fn errors_beside_those_of_one_set_are_told_with_both_numbers() {
                  2.5000000000e-1 with one, more than 1e-9 allowed";
     assert_eq!(told([0.5, 0.250_001], [0.5, 0.25]), (false, apart.to_owned()));
     let [one, two] = [0, 1].map(|place| records[place].clone());
-    let alone = |record: &Record, records: &[&Record]| one_set_found(1.0, record, records).reason;
+    let alone = |record: &Record, records: &[&Record]| point_sets_check(1.0, record, records).reason;
     assert_eq!(alone(&one, &[&one, &two]), "the case itself has one point set");
     assert_eq!(alone(&two, &[&two]), "the study has no such case with one point set");
 }

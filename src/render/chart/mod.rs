@@ -45,11 +45,11 @@ pub struct Chart {
 /// Share of the largest value within which results are one.
 const SAME: f64 = 1e-3;
 
-/// Whether some values lie further apart than a share of the largest.
-fn differ(values: impl Iterator<Item = f64> + Clone, share: f64) -> bool {
+/// Whether some values are not one.
+fn differ(values: impl Iterator<Item = f64> + Clone) -> bool {
     let least = values.clone().fold(f64::INFINITY, f64::min);
     let most = values.fold(f64::NEG_INFINITY, f64::max);
-    most - least > share * least.abs().max(most.abs())
+    most - least > SAME * least.abs().max(most.abs())
 }
 
 impl Chart {
@@ -87,8 +87,8 @@ impl Chart {
         let joins = drawn.iter().any(|(series, points)| series.style == Style::Markers || points.len() > 1);
         joins
             && points().count() >= 3
-            && differ(points().map(|(x, _)| *x), SAME)
-            && differ(points().map(|(_, y)| *y), SAME)
+            && differ(points().map(|(x, _)| *x))
+            && differ(points().map(|(_, y)| *y))
     }
 
     /// The data as CSV with all digits: one row per point of a series.

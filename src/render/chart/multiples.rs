@@ -21,14 +21,9 @@ pub(super) const SIDE_BY_SIDE: (usize, f64) = (2, PANEL_WIDTH);
 impl Chart {
     /// The panels of a figure with more series than colours; empty if one plot serves.
     pub(super) fn panels(&self) -> Vec<Self> {
-        let mut names: Vec<&str> = Vec::new();
-        for series in self.series.iter().filter(|series| is_counted(series)) {
-            if !names.contains(&series.name.as_str()) {
-                names.push(&series.name);
-            }
-        }
-        let slots: Option<BTreeSet<usize>> =
-            self.series.iter().filter(|series| is_counted(series)).map(|series| series.slot).collect();
+        let counted = || self.series.iter().filter(|series| is_counted(series));
+        let names = distinct(counted().map(|series| series.name.as_str()));
+        let slots: Option<BTreeSet<usize>> = counted().map(|series| series.slot).collect();
         let colours = slots.map_or(names.len(), |slots| slots.len());
         if colours <= MOST_SERIES {
             return Vec::new();

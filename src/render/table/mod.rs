@@ -2,6 +2,7 @@
 
 mod writers;
 
+use crate::case::grouping::distinct;
 use crate::render::{RenderError, number};
 use oedometer_wording::count_of;
 
@@ -354,16 +355,11 @@ impl Table {
 
     /// The reasons for missing values, each once, in the order of their first appearance.
     pub(crate) fn footnotes(&self) -> Vec<&str> {
-        let mut reasons: Vec<&str> = Vec::new();
-        for cell in self.shown_rows().iter().flatten() {
-            if let Cell::Missing(reason) = cell
-                && !reason.is_empty()
-                && !reasons.contains(&reason.as_str())
-            {
-                reasons.push(reason);
-            }
-        }
-        reasons
+        let reasons = self.shown_rows().iter().flatten().filter_map(|cell| match cell {
+            Cell::Missing(reason) if !reason.is_empty() => Some(reason.as_str()),
+            _ => None,
+        });
+        distinct(reasons)
     }
 }
 

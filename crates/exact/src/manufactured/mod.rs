@@ -112,11 +112,6 @@ impl Manufactured {
         Moment::new(self.parameters.motion.frequency, time)
     }
 
-    /// The point `X` of the skeleton that is at a place at a time, from a guess, m.
-    pub fn material_place(&self, place: [f64; 2], moment: &Moment, guess: [f64; 2]) -> [f64; 2] {
-        self.material_places(&[place; PLACES], moment, &[guess; PLACES])[0]
-    }
-
     /// The points of the skeleton that are at four places at a time, from guesses, m.
     #[inline(always)]
     pub fn material_places(

@@ -80,7 +80,8 @@ impl Here<'_> {
 
     /// State of the point that is at a position.
     fn at(&self, position: [f64; 2], time: f64) -> State {
-        let material = self.solution.material_place(position, &self.solution.moment(time), self.place);
+        let (places, guesses) = ([position; PLACES], [self.place; PLACES]);
+        let [material, ..] = self.solution.material_places(&places, &self.solution.moment(time), &guesses);
         self.solution.state_at(material, time)
     }
 
@@ -297,7 +298,7 @@ fn four_places_have_the_bits_of_each_alone() {
             assert_eq!(lane_values(&source), [alone.source()], "{motion:?}, {place:?}");
             assert_eq!(
                 material[lane],
-                solution.material_place(place, &moment, guesses[lane]),
+                solution.material_places(&[place; PLACES], &moment, &[guesses[lane]; PLACES])[0],
                 "{motion:?}, {place:?}"
             );
             if motion.motion == Motion::Vortex {

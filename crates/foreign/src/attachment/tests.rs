@@ -1,5 +1,6 @@
 use super::*;
 use crate::identity::LONGEST_VERSION;
+use crate::import::RIM;
 use oedometer_case::solver::Attached;
 use std::path::Path;
 

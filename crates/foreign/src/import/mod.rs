@@ -24,5 +24,5 @@ mod table_rows;
 mod tests;
 
 pub use expected::Absent;
-pub use samples::{Beside, SampledState, states_of};
+pub use samples::{Beside, RIM, SampledState, states_of};
 pub use table_rows::not_ended;

@@ -18,6 +18,9 @@ pub(crate) const SAME_PLACE: f64 = 1e-9;
 /// Values closer than this share of the largest of their state are equal: round-off of single precision.
 pub(crate) const SAME_VALUE: f64 = 1e-6;
 
+/// Share of the height within which a sample counts as at the surface or the base, and of the length as under the crest.
+pub const RIM: f64 = 1e-6;
+
 /// Samples at one time: SI, heights from the base and distances from the scene's `x = 0`, pressure
 /// compression positive, stress tension positive, displacement upward and away from `x = 0`
 /// positive. The list of a quantity that the result lacks is empty.
@@ -63,6 +66,19 @@ impl SampledState {
     pub fn sets(&self, sample: Sample) -> impl Iterator<Item = (Sample, &Self)> {
         let beside = self.beside.iter().map(move |set| (set.sample.unwrap_or(sample), &set.state));
         std::iter::once((sample, self)).chain(beside)
+    }
+
+    /// Vertical displacement of a sample at the surface of a body of a height, m: in a plane of a length, m, of one under the
+    /// crest of its load.
+    pub fn displacement_at_surface(&self, height: f64, length: Option<f64>) -> Option<f64> {
+        let is_under_crest = |place: usize| {
+            let distance = self.initial_distance.get(place);
+            length.zip(distance).is_none_or(|(length, distance)| *distance < RIM * length)
+        };
+        let is_at_surface =
+            |place: &usize| self.initial_height[*place] > (1.0 - RIM) * height && is_under_crest(*place);
+        let place = (0..self.initial_height.len()).find(is_at_surface)?;
+        self.displacement.get(place).copied()
     }
 
     /// Changes its samples, and those beside them.

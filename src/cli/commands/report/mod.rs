@@ -1,5 +1,6 @@
 //! `oedometer report`: runs missing cases and renders everything.
 
+use crate::campaign::case_run::all_cores;
 use crate::campaign::runner::{RunOptions, RunReport, Tally};
 use crate::campaign::taken_over::TakenOver;
 use crate::case::Case;
@@ -239,8 +240,7 @@ fn changes(
 
 /// The processor by its name if the system reports it, else by its architecture, with the number of its threads.
 fn processor() -> String {
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    format!("{threads} × {}", Machine::this().processor)
+    format!("{} × {}", all_cores(), Machine::this().processor)
 }
 
 /// The command as it was typed, without the path of the program.
