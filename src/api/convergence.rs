@@ -82,10 +82,8 @@ pub fn convergence(sizes: &[f64], errors: &[f64], formal_order: Option<f64>) -> 
 pub fn verdict(sizes: &[f64], errors: &[f64], demand: &Demand) -> Result<(bool, String), ApiError> {
     let (series, context) = series_of(sizes, errors, demand.order.map(|(value, ..)| value))?;
     let class = demand.class.as_deref().map(|word| {
-        let names = Class::ALL.map(Class::name);
-        let found = Class::ALL.into_iter().find(|class| class.name() == word);
-        let unknown = || format!("unknown class `{word}`: {}", one_of(word, &names));
-        found.ok_or_else(|| ApiError::UnknownName(unknown()))
+        let unknown = || format!("unknown class `{word}`: {}", one_of(word, &Class::NAMES));
+        Class::named(word).ok_or_else(|| ApiError::UnknownName(unknown()))
     });
     let demand = SeriesDemand {
         order: demand.order.map(|(value, minus, plus)| OrderBand { value, minus, plus }),

@@ -10,7 +10,7 @@ pub mod score;
 
 use crate::api::error::ApiError;
 use crate::case::keys::Key;
-use crate::foreign::reading::MappingError;
+use crate::foreign::reading::mapping_file;
 use crate::import::SampledState;
 use crate::import::given_files::{are_tables, files_of};
 use crate::import::mapping::{Axes, Mapping};
@@ -23,7 +23,6 @@ use crate::study::synonyms::read_as;
 use clap::ValueEnum;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_exact::{AddedKey, TextbookProblem};
-use oedometer_formats::input_file;
 use oedometer_scenes::Scene;
 use std::path::PathBuf;
 
@@ -111,13 +110,9 @@ pub(crate) fn runs_with(
 ) -> Result<(Mapping, Vec<Run>), ApiError> {
     let given = files_of(files)?;
     let is_tables = are_tables(&given)?;
-    let own = meaning.mapping.as_ref().map(|path| {
-        let text = input_file::read_text(path);
-        let text = text.map_err(|source| MappingError::Io { path: path.clone(), source })?;
-        Ok::<_, ApiError>(StudySource { name: path.display().to_string(), text })
-    });
+    let own = meaning.mapping.clone().map(mapping_file).transpose()?;
     let typed = meaning.mapping_text.clone().map(|text| StudySource { name: "the mapping".to_owned(), text });
-    let own = own.transpose()?.or(typed);
+    let own = own.or(typed);
     let default = (own.is_none() && !is_tables).then_some("meshio");
     let named = meaning.preset.as_deref().filter(|_| !is_tables).or(default);
     let preset =

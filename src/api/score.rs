@@ -55,9 +55,8 @@ pub fn score(
 ) -> Result<Score, ApiError> {
     let asked = asked(scene, reference, assignments)?;
     let case = asked.case();
-    let kind = Sample::ALL.into_iter().find(|kind| kind.name() == sample);
-    let kind = kind.ok_or_else(|| {
-        let names = Sample::ALL.map(Sample::name).join(", ");
+    let kind = Sample::named(sample).ok_or_else(|| {
+        let names = Sample::NAMES.join(", ");
         ApiError::UnknownName(format!("unknown kind of places `{sample}`: expected {names}"))
     })?;
     let mut mapping = Mapping::convention(Axes::of(case.scene))?;

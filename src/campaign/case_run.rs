@@ -16,7 +16,7 @@ use oedometer_mpm::time_limit::TimeLimit;
 use oedometer_problem::critical_step::CriticalStep;
 use oedometer_problem::integrator::{Formulation, StepBound};
 use oedometer_problem::method::Method;
-use oedometer_problem::outcome::{self, Counters, Failure, FailureKind, RunStatus, StepSizes};
+use oedometer_problem::outcome::{self, Counters, Failure, FailureKind, StepSizes};
 use oedometer_problem::problem::StartError;
 use oedometer_problem::time_step::TimeStep;
 use oedometer_problem::wave_speeds;
@@ -132,8 +132,8 @@ fn solved(
 fn outcome_of(run: outcome::Outcome) -> Outcome {
     let outcome::Outcome { status, start, snapshots, history, counters, step_sizes } = run;
     let mut outcome = match status {
-        RunStatus::Ok => Outcome::of_end(Status::Ok),
-        RunStatus::Failed(failure) => Outcome::of_failure(failure),
+        Ok(()) => Outcome::of_end(Status::Ok),
+        Err(failure) => Outcome::of_failure(failure),
     };
     outcome.snapshots = snapshots;
     let inside = Inside { counters, start: Some(start), history, critical_step: None };

@@ -9,7 +9,7 @@ macro_rules! shipped {
     };
 }
 
-/// The names in the order of the report, and the texts.
+/// The files in the order of the report, and their texts.
 const SHIPPED: &[(&str, &str)] = shipped! {
     "terzaghi-mesh" "terzaghi-both-ends" "terzaghi-floor" "terzaghi-points" "terzaghi-time-step" "step-control"
     "value-uncertainty" "terzaghi-methods" "terzaghi-integrators" "any-soil" "any-column" "jittered-points" "work-precision" "terzaghi-moving"
@@ -38,22 +38,19 @@ const SHIPPED: &[(&str, &str)] = shipped! {
 
 /// The shipped study of a name.
 pub fn shipped_study(name: &str) -> Option<StudySource> {
-    shipped_studies().into_iter().find(|source| name_of(&source.name) == name)
+    SHIPPED.iter().find(|(file, _)| name_of(file) == name).map(source)
 }
 
 /// The names of the shipped studies.
 pub fn shipped_names() -> Vec<String> {
-    shipped_studies().iter().map(|source| name_of(&source.name)).collect()
+    SHIPPED.iter().map(|(file, _)| name_of(file)).collect()
 }
 
 /// Names and titles of the shipped studies. Only the line of the title is read: nothing is checked.
-pub fn shipped_titles() -> impl Iterator<Item = (&'static str, String)> {
-    SHIPPED.iter().map(|(name, text)| {
+pub fn shipped_titles() -> impl Iterator<Item = (String, String)> {
+    SHIPPED.iter().map(|(file, text)| {
         let title = text.lines().find_map(|line| toml::from_str::<Titled>(line).ok());
-        (
-            name.trim_start_matches("studies/").trim_end_matches(".toml"),
-            title.map_or(String::new(), |titled| titled.title),
-        )
+        (name_of(file), title.map_or(String::new(), |titled| titled.title))
     })
 }
 
@@ -65,9 +62,11 @@ struct Titled {
 
 /// Every shipped study.
 pub fn shipped_studies() -> Vec<StudySource> {
-    let study =
-        |(name, text): &(&str, &str)| StudySource { name: (*name).to_owned(), text: (*text).to_owned() };
-    SHIPPED.iter().map(study).collect()
+    SHIPPED.iter().map(source).collect()
+}
+
+fn source((file, text): &(&str, &str)) -> StudySource {
+    StudySource { name: (*file).to_owned(), text: (*text).to_owned() }
 }
 
 /// Longest name, bytes: file systems take 255, and what is made of a name puts more around it.
@@ -155,7 +154,7 @@ mod tests {
     fn the_titles_are_those_of_the_checked_studies() {
         for ((name, title), source) in shipped_titles().zip(shipped_studies()).step_by(9) {
             let study = Study::check(&source).expect("sound");
-            assert_eq!((name, title), (study.name.as_str(), study.title));
+            assert_eq!((name, title), (study.name, study.title));
         }
     }
 

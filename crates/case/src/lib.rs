@@ -26,7 +26,7 @@ use oedometer_scenes::column::{Column, column_parameters};
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
-use oedometer_wording::words;
+use oedometer_wording::{is_default, words};
 pub use planned::{PlannedCase, Planner, Shared, Tier};
 use serde::{Deserialize, Serialize};
 pub use solver::{Attached, SolverName};
@@ -57,18 +57,11 @@ pub enum Task {
 
 words!(Task: Solve "solve", Stability "stability");
 
-impl Task {
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
-    fn is_solve(&self) -> bool {
-        *self == Self::Solve
-    }
-}
-
 /// All inputs of one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Case {
     /// What is done with it.
-    #[serde(default, skip_serializing_if = "Task::is_solve")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub task: Task,
     /// Physical problem.
     pub scene: &'static Scene,

@@ -73,19 +73,23 @@ pub enum MappingError {
     Wrong(#[from] StudyError),
 }
 
+/// A mapping file.
+///
+/// # Errors
+/// When it cannot be read.
+pub fn mapping_file(path: PathBuf) -> Result<StudySource, MappingError> {
+    match input_file::read_text(&path) {
+        Ok(text) => Ok(StudySource { name: path.display().to_string(), text }),
+        Err(source) => Err(MappingError::Io { path, source }),
+    }
+}
+
 /// What the columns or arrays of a solver's result mean.
 ///
 /// # Errors
 /// When the mapping file cannot be read or is wrong.
 pub fn mapping_of(solver: &ExternalSolver, axes: Axes) -> Result<Mapping, MappingError> {
-    let own = solver.mapping.as_ref().map(|name| {
-        let path = solver.folder.join(name);
-        match input_file::read_text(&path) {
-            Ok(text) => Ok(StudySource { name: path.display().to_string(), text }),
-            Err(source) => Err(MappingError::Io { path, source }),
-        }
-    });
-    let own = own.transpose()?;
+    let own = solver.mapping.as_ref().map(|name| mapping_file(solver.folder.join(name))).transpose()?;
     let mut mapping = Mapping::resolve(solver.preset, own.as_ref(), axes)?;
     // A gate assumes nothing that is not declared.
     if let (Some(taken), Some(source)) =

@@ -130,15 +130,6 @@ impl fmt::Display for Failure {
     }
 }
 
-/// The end of a run.
-#[derive(Clone, Debug, PartialEq)]
-pub enum RunStatus {
-    /// All outputs reached.
-    Ok,
-    /// Ended before the last output.
-    Failed(Failure),
-}
-
 /// Work done, in integers: the same on every machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Counters {
@@ -208,7 +199,7 @@ pub struct Energy {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// End of the run.
-    pub status: RunStatus,
+    pub status: Result<(), Failure>,
     /// State at the start.
     pub start: Snapshot,
     /// State at the output times that were reached.

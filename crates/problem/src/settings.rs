@@ -7,7 +7,7 @@
 //! Wanner 2003): second order for the same work. The drag must then be centred too.
 
 use oedometer_soil::elementary;
-use oedometer_wording::words;
+use oedometer_wording::{is_default, words};
 use serde::{Deserialize, Serialize};
 
 /// Time levels of velocities and stresses.
@@ -22,18 +22,11 @@ pub enum Scheme {
 
 words!(Scheme: ForwardEuler "forward-euler", Leapfrog "leapfrog");
 
-impl Scheme {
-    /// Whether this is the paper's; records of it say nothing of the scheme.
-    pub fn is_paper(&self) -> bool {
-        *self == Self::ForwardEuler
-    }
-}
-
 /// Choices of the explicit integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ExplicitSettings {
     /// Time levels of velocities and stresses.
-    #[serde(default, skip_serializing_if = "Scheme::is_paper")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub scheme: Scheme,
     /// Time level of the drag.
     pub drag: Drag,

@@ -4,9 +4,7 @@ use crate::integrate::run_plan::Plan;
 use crate::integrate::schedule::Observer;
 use crate::integrate::stepper::{EqualSteps, StepFailure, Stepper};
 use crate::run::watch::Watch;
-use oedometer_problem::outcome::{
-    Counters, Energy, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes,
-};
+use oedometer_problem::outcome::{Counters, Energy, Failure, FailureKind, HistoryPoint, Outcome, StepSizes};
 use oedometer_problem::snapshot::Snapshot;
 use oedometer_problem::time_step::{Steps, steps_for};
 
@@ -67,16 +65,16 @@ impl<'a> Driver<'a> {
         let start = self.stepper.snapshot(0.0);
         self.watch.begin(&start);
         let mut snapshots = Vec::new();
-        let mut status = start_failure.map_or(RunStatus::Ok, RunStatus::Failed);
+        let mut status = start_failure.map_or(Ok(()), Err);
         for output in &self.plan.schedule.outputs {
-            if status != RunStatus::Ok {
+            if status.is_err() {
                 break;
             }
             match self.output_at(*output) {
                 Ok(snapshot) => snapshots.push(snapshot),
                 Err(StepFailure { kind, reason }) => {
                     let (step, growth) = (self.counters.steps, self.watch.growth());
-                    status = RunStatus::Failed(Failure { kind, step, time: self.time, growth, reason });
+                    status = Err(Failure { kind, step, time: self.time, growth, reason });
                 }
             }
         }

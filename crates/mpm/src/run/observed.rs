@@ -13,7 +13,7 @@ use crate::run::{Kernel, Observer, Schedule, run};
 use crate::time_limit::TimeLimit;
 use oedometer_problem::critical_step::{CriticalStep, OBSERVED_STEPS, Probe, SHARES};
 use oedometer_problem::integrator::{Formulation, IntegratorKind};
-use oedometer_problem::outcome::{Failure, FailureKind, RunStatus};
+use oedometer_problem::outcome::{Failure, FailureKind};
 use oedometer_problem::settings::ExplicitSettings;
 use oedometer_problem::time_step::TimeStep;
 use oedometer_problem::wave_speeds;
@@ -313,11 +313,10 @@ fn schedule_of(settings: &ExplicitSettings, end: f64, critical: f64) -> Schedule
     }
 }
 
-fn failure_of(status: RunStatus) -> Result<Option<Failure>, Stopped> {
-    match status {
-        RunStatus::Ok => Ok(None),
-        RunStatus::Failed(failure) if failure.kind == FailureKind::Stopped => Err(Stopped),
-        RunStatus::Failed(failure) => Ok(Some(failure)),
+fn failure_of(status: Result<(), Failure>) -> Result<Option<Failure>, Stopped> {
+    match status.err() {
+        Some(failure) if failure.kind == FailureKind::Stopped => Err(Stopped),
+        failure => Ok(failure),
     }
 }
 
@@ -394,7 +393,7 @@ mod tests {
             let runs = |share: f64| {
                 let schedule =
                     Schedule { time_step: TimeStep::Stable(share), ..schedule_of(&settings, end, start) };
-                run(problem.clone(), &schedule, &|_, _| true).status == RunStatus::Ok
+                run(problem.clone(), &schedule, &|_, _| true).status.is_ok()
             };
             assert_eq!([reliable, above * share].map(runs), [true, false], "{name}");
             assert_eq!(

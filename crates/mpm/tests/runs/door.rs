@@ -8,7 +8,7 @@ use oedometer_mpm::run::{Kernel, Schedule};
 use oedometer_mpm::time_limit::TimeLimit;
 use oedometer_problem::integrator::{Formulation, IntegratorKind};
 use oedometer_problem::method::Method;
-use oedometer_problem::outcome::{FailureKind, RunStatus};
+use oedometer_problem::outcome::FailureKind;
 use oedometer_problem::settings::Scheme;
 use oedometer_problem::settings::{Drag, ExplicitSettings};
 use oedometer_problem::time_step::TimeStep;
@@ -65,7 +65,7 @@ fn the_assembled_column_is_the_point_wise_step_to_round_off() {
                 let outcome = |kernel| run(problem_of(name, 7, 3), &schedule(kernel, settings, 0.02));
                 let (fast, plain) = (outcome(Kernel::Fastest), outcome(Kernel::PointWise));
                 assert_eq!(fast.counters, plain.counters);
-                assert_eq!(fast.status, RunStatus::Ok);
+                assert_eq!(fast.status, Ok(()));
                 let (fast, plain) = (fast.snapshots[2].clone(), plain.snapshots[2].clone());
                 for (a, b) in [
                     (&fast.points.pressure, &plain.points.pressure),
@@ -95,8 +95,8 @@ fn a_step_beyond_the_limit_ends_with_a_name_and_below_it_runs() {
                 schedule.time_step = TimeStep::Stable(share);
                 let outcome = run(problem(name, 8, 2), &schedule);
                 match outcome.status {
-                    RunStatus::Ok => assert!(stable, "{name} {share} {mapping_back}"),
-                    RunStatus::Failed(failure) => {
+                    Ok(()) => assert!(stable, "{name} {share} {mapping_back}"),
+                    Err(failure) => {
                         assert!(!stable, "{name} {share} {mapping_back}");
                         assert_eq!(failure.kind, FailureKind::Unstable);
                     }
@@ -121,7 +121,7 @@ fn outputs_are_reached_and_the_history_is_recorded() {
 fn an_observer_can_stop_a_run() {
     let schedule = schedule(Kernel::Fastest, ExplicitSettings::default(), 0.1);
     let outcome = Discretised::from(problem("GIMP", 5, 2)).run(&schedule, &|done, _| done < 100);
-    let RunStatus::Failed(failure) = outcome.status else { panic!("not stopped") };
+    let Err(failure) = outcome.status else { panic!("not stopped") };
     assert_eq!((failure.kind, failure.step), (FailureKind::Stopped, 128));
     assert_eq!(outcome.snapshots.len(), 1, "what was finished stays");
 }
@@ -139,10 +139,10 @@ fn a_step_that_makes_energy_is_ended_before_its_pressures_are_wrong() {
         // Whole steps from output to output, which are not made smaller to end there.
         plan.outputs = (1..=400).map(|output| 20.0 * share * critical * f64::from(output)).collect();
         let sound = run(problem(name, 8, 2), &plan);
-        assert_eq!(sound.status, RunStatus::Ok);
+        assert_eq!(sound.status, Ok(()));
         plan.time_step = TimeStep::Stable(share);
         let grown = run(problem(name, 8, 2), &plan);
-        let RunStatus::Failed(failure) = grown.status else { panic!("{name} {share} went on to its end") };
+        let Err(failure) = grown.status else { panic!("{name} {share} went on to its end") };
         assert_eq!(failure.kind, FailureKind::Unstable);
         let is_named = failure.reason.contains("without work")
             || failure.reason.contains("out-of-balance force at a node");

@@ -6,7 +6,7 @@ use crate::run;
 use oedometer_mpm::run::{Kernel, Schedule};
 use oedometer_mpm::time_limit::TimeLimit;
 use oedometer_problem::method::{Configuration, Method};
-use oedometer_problem::outcome::{Outcome, RunStatus};
+use oedometer_problem::outcome::Outcome;
 use oedometer_problem::settings::{Drag, ExplicitSettings};
 use oedometer_problem::snapshot::Snapshot;
 use oedometer_problem::time_step::TimeStep;
@@ -77,7 +77,7 @@ impl Setup {
             kernel: self.kernel,
         };
         let outcome = run(problem, &schedule);
-        assert_eq!(outcome.status, RunStatus::Ok, "{self:?}");
+        assert_eq!(outcome.status, Ok(()), "{self:?}");
         assert_eq!(outcome.snapshots.len(), self.time_factors.len());
         outcome
     }

@@ -4,17 +4,15 @@ use crate::case::Case;
 use crate::cli::commands::score::Arguments;
 use crate::cli::exit::Ended;
 use crate::cli::output::say;
+use crate::foreign::reading::mapping_file;
 use crate::import::given_files::{are_tables, files_of};
 use crate::import::mapping::{Axes, Mapping};
 use crate::import::raw_row::SolvedBody;
 use crate::import::run::Run;
 use crate::import::runs::runs_of;
-use crate::study::file::StudySource;
 use crate::study::overrides::times;
 use crate::study::solver::Preset;
 use clap::ValueEnum;
-use oedometer_formats::input_file;
-use std::path::Path;
 
 /// Reads the files of the command line, which may lack some quantities: their mapping, and their runs. `requested` are
 /// time factors.
@@ -81,7 +79,8 @@ pub fn read(arguments: &Arguments, case: &Case, requested: &[f64]) -> anyhow::Re
 
 /// The declared meaning of the columns or arrays; a note says what is assumed if nothing is declared.
 fn mapping_of(arguments: &Arguments, axes: Axes, is_tables: bool) -> anyhow::Result<Mapping> {
-    let typed = arguments.mapping.as_deref().map(source_of).transpose()?;
+    let typed = arguments.mapping.clone().map(mapping_file).transpose();
+    let typed = typed.map_err(|error| Ended::usage(error.to_string()))?;
     let mut preset = arguments.preset;
     if preset.is_none() && typed.is_none() {
         if is_tables {
@@ -106,12 +105,6 @@ fn mapping_of(arguments: &Arguments, axes: Axes, is_tables: bool) -> anyhow::Res
         }
     }
     Ok(Mapping::resolve(preset, typed.as_ref(), axes)?)
-}
-
-fn source_of(path: &Path) -> anyhow::Result<StudySource> {
-    let text = input_file::read_text(path)
-        .map_err(|error| Ended::usage(format!("cannot read the mapping {}: {error}", path.display())))?;
-    Ok(StudySource { name: path.display().to_string(), text })
 }
 
 /// Numbers of cells, one per result.

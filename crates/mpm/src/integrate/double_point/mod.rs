@@ -248,7 +248,7 @@ mod tests {
     use oedometer_problem::arrangement::Arrangement;
     use oedometer_problem::integrator::{Formulation, IntegratorKind};
     use oedometer_problem::method::Method;
-    use oedometer_problem::outcome::{Outcome, RunStatus};
+    use oedometer_problem::outcome::Outcome;
     use oedometer_problem::settings::Scheme;
     use oedometer_problem::settings::{Drag, ExplicitSettings};
     use oedometer_problem::snapshot::{Snapshot, Totals};
@@ -370,7 +370,7 @@ mod tests {
         let implicit = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
         for name in ["GIMP", "GIMP-SRI-patch", "GIMP-SRI"] {
             let outcome = solved::<1>(problem(&XIE_LEO, name, [4, 4], 2e5), implicit, 0.15);
-            assert_eq!(outcome.status, RunStatus::Ok, "{name}");
+            assert_eq!(outcome.status, Ok(()), "{name}");
             let last = &outcome.snapshots[1];
             let double = last.totals.double_point.expect("two sets of points");
             // Grains and water are incompressible: what left are the pores that were lost.
@@ -392,7 +392,7 @@ mod tests {
         for method in ["GIMP-SRI-patch", "CPDI-SRI-patch"] {
             let line = solved::<1>(problem(&XIE_LEO, method, [2, 2], 2e5), implicit, 0.05);
             let plane = solved::<2>(problem(&XIE_LEO, method, [2, 2], 2e5), implicit, 0.05);
-            assert_eq!(plane.status, RunStatus::Ok, "{method}");
+            assert_eq!(plane.status, Ok(()), "{method}");
             let (line, plane) = (&line.snapshots[1], &plane.snapshots[1]);
             let left =
                 |snapshot: &Snapshot| snapshot.totals.double_point.expect("two sets of points").water_left;
@@ -421,7 +421,7 @@ mod tests {
             time_limit: TimeLimit::default(),
         };
         let outcome = run(problem::<1>(&TERZAGHI, "GIMP", [2, 2], 1.0), &schedule, &|_, _| true);
-        let RunStatus::Failed(failure) = outcome.status else { panic!("solved") };
+        let Err(failure) = outcome.status else { panic!("solved") };
         assert!(failure.reason.contains("integrated explicitly, not with `implicit`"), "{}", failure.reason);
     }
 }

@@ -4,7 +4,7 @@ use crate::time_limit::TimeLimit;
 use oedometer_exact::footing::LOAD_FACTOR;
 use oedometer_problem::integrator::{Formulation, IntegratorKind};
 use oedometer_problem::method::Method;
-use oedometer_problem::outcome::{Outcome, RunStatus};
+use oedometer_problem::outcome::Outcome;
 use oedometer_problem::settings::ExplicitSettings;
 use oedometer_problem::time_step::TimeStep;
 use oedometer_scenes::FOOTING;
@@ -42,7 +42,7 @@ fn stepped(
         time_limit: TimeLimit::default(),
     };
     let outcome = run(problem, &schedule, &|_, _| true);
-    assert_eq!(outcome.status, RunStatus::Ok);
+    assert_eq!(outcome.status, Ok(()));
     outcome
 }
 
