@@ -214,10 +214,7 @@ fn a_failure_is_told_with_its_study_and_kept_and_of_what_may_not_begin_neither()
         }
         assert_eq!(store.hashes().len(), kept, "what is on disk of a case that may not begin stays");
     }
-    assert_eq!(
-        store.kept(&allowed.planned[0].case).map(|record| record.status.name()),
-        Some("failed".to_owned())
-    );
+    assert_eq!(store.kept(&allowed.planned[0].case).map(|record| record.status.name()), Some("failed"));
     // Nothing is started to be timed either, and of a run that was ended there is no time.
     let seconds = |study: &Study| {
         let runner = CaseRunner::of(study);

@@ -10,7 +10,7 @@ use crate::golden::measure::{GoldenKey, Measure};
 use crate::history::state::{State, StudyState};
 use crate::measure::round_off::{ITERATIONS, ROUND_OFF};
 use crate::measure::statistics::spread;
-use oedometer_convergence::{Context, ErrorSeries, SeriesLevel, classify};
+use oedometer_convergence::{Context, ErrorSeries, SeriesLevel, WINDOW, classify};
 use oedometer_wording::count_of;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -203,8 +203,6 @@ pub(crate) fn compare_states(
 const TOLD: f64 = 0.05;
 /// Fall of an order from which on it is lost.
 const LOST: f64 = 0.15;
-/// Levels from which on a series has a class.
-const LEAST_LEVELS: usize = 3;
 
 /// Order and class of a series in one state.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -281,7 +279,7 @@ fn behaviours(
             series.entry(key).or_default().push((size, *value));
         }
     }
-    series.retain(|_, levels| levels.len() >= LEAST_LEVELS);
+    series.retain(|_, levels| levels.len() >= WINDOW);
     let behaviour = |mut levels: Vec<(f64, f64)>| {
         levels.sort_by(|a, b| b.0.total_cmp(&a.0));
         let level = |(size, error): &(f64, f64)| SeriesLevel { size: *size, error: Some(error.abs()) };

@@ -10,7 +10,7 @@ use oedometer_problem::time_step::TimeStep;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Runs with an error each, where it may be quoted.
-pub struct QuotedRuns<'a>(Vec<(&'a Record, Option<f64>)>);
+pub struct QuotedRuns<'a>(Vec<QuotedRun<'a>>);
 
 impl<'a> QuotedRuns<'a> {
     /// The errors of sound runs that meet the expectations of their cases.
@@ -40,13 +40,13 @@ impl<'a> QuotedRuns<'a> {
 }
 
 /// A run and its error that may be quoted.
-type RunError<'a> = (&'a Record, Option<f64>);
+type QuotedRun<'a> = (&'a Record, Option<f64>);
 
 /// The same of runs that differ in meshes, steps and outputs alone.
-fn reaching_of<'a>(runs: &[RunError<'a>], tolerance: f64) -> Vec<(&'a str, bool)> {
+fn reaching_of<'a>(runs: &[QuotedRun<'a>], tolerance: f64) -> Vec<(&'a str, bool)> {
     let rules = grouped(runs.iter().copied(), |(record, _)| rule_of(&record.case));
     let meshes: Vec<MeshErrors> = rules.iter().map(|(_, runs)| errors_of_meshes(runs)).collect();
-    let reaching = |(place, (_, runs)): (usize, &(String, Vec<RunError<'a>>))| {
+    let reaching = |(place, (_, runs)): (usize, &(String, Vec<QuotedRun<'a>>))| {
         // A mesh without a run by this rule, as where mesh and step are refined together, counts by its best one.
         let mut all: MeshErrors = BTreeMap::new();
         for (cells, error) in meshes.iter().flatten() {
@@ -68,8 +68,8 @@ fn reaching_of<'a>(runs: &[RunError<'a>], tolerance: f64) -> Vec<(&'a str, bool)
 /// By the number of cells the largest error on a mesh; none where a run has none to quote.
 type MeshErrors = BTreeMap<usize, Option<f64>>;
 
-fn errors_of_meshes(runs: &[(&Record, Option<f64>)]) -> MeshErrors {
-    let largest = |runs: Vec<(&Record, Option<f64>)>| {
+fn errors_of_meshes(runs: &[QuotedRun<'_>]) -> MeshErrors {
+    let largest = |runs: Vec<QuotedRun<'_>>| {
         let errors: Option<Vec<f64>> = runs.into_iter().map(|(_, error)| error).collect();
         errors?.into_iter().max_by(f64::total_cmp)
     };

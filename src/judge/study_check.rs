@@ -271,7 +271,7 @@ impl StudyCheck {
 
     /// A sentence on the cases whose inputs are others than those of their golden values, with what differs where that is known;
     /// none where there are no such cases.
-    pub fn told_inputs(&self) -> Option<String> {
+    pub fn sentence_on_inputs(&self) -> Option<String> {
         let first = self.other_inputs.first()?;
         let (has, their) = if self.other_inputs.len() == 1 { ("has", "its") } else { ("have", "their") };
         let which = match self.input_changes.as_slice() {
@@ -397,11 +397,11 @@ pub fn diagnoses(study: &Study, records: &[Record]) -> Vec<String> {
             *known = record;
         }
     }
-    let told = |record: &Record| {
+    let labelled = |record: &Record| {
         let label = record.case.label();
         of_record(study, record).into_iter().map(move |sentence| format!("{label}: {sentence}"))
     };
-    finest.into_values().flat_map(told).collect()
+    finest.into_values().flat_map(labelled).collect()
 }
 
 /// Sentences on one record: none where its result is missing, or no reference is known for it.

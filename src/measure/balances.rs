@@ -6,8 +6,7 @@ use crate::record::{Balance, HistoryRow, LayerBalance, StartChecks};
 use oedometer_exact::{ExactError, Reference};
 use oedometer_problem::snapshot::Snapshot;
 use oedometer_scenes::column::column_parameters;
-use oedometer_scenes::scene::Body;
-use oedometer_scenes::scene::Question;
+use oedometer_scenes::scene::{Body, Question};
 use oedometer_soil::elementary;
 
 /// The start against what the scene expects of it.

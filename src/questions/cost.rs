@@ -89,15 +89,15 @@ fn title_of(precision: &WorkPrecision<'_>) -> String {
     let runs = precision.cheapest.iter().filter_map(|one| Some((one.tolerance, one.run.as_ref()?)));
     let least = runs.map(|(tolerance, run)| (run.record.case.method.to_string(), number::bound(tolerance)));
     let groups = grouped(least, |(method, _)| method.clone()).into_iter();
-    let told = groups.map(|(method, within)| {
+    let parts = groups.map(|(method, within)| {
         let within: Vec<String> = within.into_iter().map(|(_, tolerance)| tolerance).collect();
         format!("{method} to {}", within.join(", "))
     });
-    let told: Vec<String> = told.collect();
-    if told.is_empty() {
+    let parts: Vec<String> = parts.collect();
+    if parts.is_empty() {
         "No run is within 1 %".to_owned()
     } else {
-        format!("Least work: {}", told.join("; "))
+        format!("Least work: {}", parts.join("; "))
     }
 }
 

@@ -87,7 +87,7 @@ fn table(rows: &[&SweepRow], ratios: &[f64]) -> Table {
         [Cell::Code(row.method.to_string()), loss(row, ratios)].into_iter().chain(errors).collect()
     });
     Table::of("Errors over Poisson's ratio", columns(&header), cells).file("locking").note(format!(
-        "relative L_2 errors of the nodal displacement and of the pressure at the points; above {limit} %: \
+        "relative L_2 errors of the nodal displacement and of the pressure at the points; above {limit}: \
          the first ratio at which either exceeds it"
     ))
 }

@@ -71,7 +71,7 @@ fn row(record: &Record) -> Option<Vec<Cell>> {
     let not_told = "the system does not report it";
     Some(vec![
         Cell::Code(record.case.label()),
-        Cell::Verdict(mood, record.status.name()),
+        Cell::Verdict(mood, record.status.name().to_owned()),
         about.made_by().replace('`', "").into(),
         Cell::of(wall.map(|wall| wall.minimum), Cell::Measured, "not run"),
         Cell::of(wall.map(|wall| wall.median), Cell::Measured, "not run"),

@@ -62,7 +62,7 @@ struct UnstableStep {
     /// The step.
     step: String,
     /// How it ended.
-    ending: String,
+    ending: &'static str,
 }
 
 /// Errors of the pressure with the largest and the smallest step that reached the end.
@@ -116,7 +116,7 @@ fn facts_of(found: &SeriesTable<'_>) -> Facts {
         let place = one.errors.iter().rposition(|error| *error == LevelError::Failed)?;
         let record = one.summary.path.records[0];
         let failed = found.failed_at(record, place)?;
-        Some(UnstableStep { run: one.label.clone(), step: step(place), ending: failed.status.name().clone() })
+        Some(UnstableStep { run: one.label.clone(), step: step(place), ending: failed.status.name() })
     });
     let changes = pressures(found).filter_map(|one| {
         let [(largest, coarse), (smallest, fine)] = one.ends()?;
@@ -144,7 +144,7 @@ fn failed_alone(one: &StudyResults<'_>, found: &SeriesTable<'_>) -> Vec<Unstable
     let runs = grouped(failed, |record| format!("{}, {}", record.case.method, record.case.integrator.name()));
     let smallest = |(run, records): (String, Vec<&Record>)| {
         let least = records.into_iter().min_by(|a, b| a.step_sizes.target.total_cmp(&b.step_sizes.target))?;
-        let (step, ending) = (name_of_level(least, Axis::TimeStep), least.status.name().clone());
+        let (step, ending) = (name_of_level(least, Axis::TimeStep), least.status.name());
         Some(UnstableStep { run, step, ending })
     };
     runs.into_iter().filter_map(smallest).collect()

@@ -3,6 +3,7 @@
 
 use crate::campaign::refinement::{Refinement, halvings, judged_errors, steps_of};
 use crate::case::contender::{CONTENDERS, Contender};
+use crate::case::grouping::grouped;
 use crate::case::{Quantity, Sample, Task};
 use crate::judge::paths::first_error;
 use crate::measure::statistics::median;
@@ -160,17 +161,14 @@ fn ladder_of<'a>(study: &Study, mut runs: Vec<&'a Record>) -> Vec<Vec<&'a Record
     let steps = steps_of(study);
     runs.sort_by_key(|record| (halvings(&steps, &record.case), record.case.cells));
     let mut refinement = Refinement::of(study);
-    let mut ladder: Vec<Vec<&Record>> = Vec::new();
+    let mut wanted: Vec<&Record> = Vec::new();
     for record in runs {
         if refinement.wants(&record.case) {
             refinement.add(record);
-            match ladder.iter_mut().find(|runs| runs[0].case.cells == record.case.cells) {
-                Some(runs) => runs.push(record),
-                None => ladder.push(vec![record]),
-            }
+            wanted.push(record);
         }
     }
-    ladder
+    grouped(wanted, |record| record.case.cells).into_iter().map(|(_, runs)| runs).collect()
 }
 
 fn level(runs: &[&Record]) -> Level {

@@ -32,8 +32,8 @@ pub fn annotations_of(checks: &[StudyCheck], file_of: impl Fn(&str) -> Option<St
         for note in check.failed_cases.iter().chain(&check.unsound) {
             add("error", 1, &note.case, &note.sentence);
         }
-        if let Some(told) = check.told_inputs() {
-            add("error", 1, "inputs changed", &told);
+        if let Some(sentence) = check.sentence_on_inputs() {
+            add("error", 1, "inputs changed", &sentence);
         }
         match &check.golden_problem {
             Some(_) if check.end() == CheckEnd::HeldBack => {

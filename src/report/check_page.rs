@@ -82,10 +82,10 @@ fn answers_within(
     let Terminal { width, is_whole } = terminal;
     let (mut text, mut others) = (String::new(), Vec::new());
     for finding in answers {
-        let told = page::text_of(&answer(finding, is_whole)?, width, is_whole)?;
-        let lines = text.lines().count() + 1 + told.lines().count();
+        let shown = page::text_of(&answer(finding, is_whole)?, width, is_whole)?;
+        let lines = text.lines().count() + 1 + shown.lines().count();
         if is_whole || text.is_empty() || lines <= room {
-            text.extend([if text.is_empty() { "" } else { "\n" }, &told]);
+            text.extend([if text.is_empty() { "" } else { "\n" }, &shown]);
         } else {
             others.push(finding.question.heading.to_owned());
         }
@@ -132,9 +132,9 @@ fn list(points: Vec<String>, is_whole: bool) -> Option<Block> {
 
 /// What stands between the verdict and the answers: what seems to be wrong, what failed, what changed.
 fn before(check: &StudyCheck, is_whole: bool) -> Vec<Block> {
-    let diagnoses = check.diagnoses.iter().map(|told| format!("diagnosis: {told}")).collect();
+    let diagnoses = check.diagnoses.iter().map(|sentence| format!("diagnosis: {sentence}")).collect();
     let failed = check.objections().iter().map(objection).collect();
-    let inputs: Vec<String> = check.told_inputs().into_iter().collect();
+    let inputs: Vec<String> = check.sentence_on_inputs().into_iter().collect();
     let groups = check.groups.iter().map(|group| format!("golden values: {}", sentence(group))).collect();
     let lists = [
         list(diagnoses, is_whole),
@@ -165,7 +165,7 @@ fn proposed(check: &StudyCheck) -> Option<(String, Vec<Block>)> {
 /// What stands below the answers.
 fn after(check: &StudyCheck, file: Option<&str>) -> Vec<Block> {
     let details = proposed(check).map(|(summary, blocks)| Block::Details { summary, blocks });
-    let warnings = list(check.warnings.iter().map(|told| format!("warning: {told}")).collect(), true);
+    let warnings = list(check.warnings.iter().map(|sentence| format!("warning: {sentence}")).collect(), true);
     let next = next_command(check, file).map(|command| Block::Paragraph(format!("next: `{command}`")));
     details.into_iter().chain(warnings).chain(next).collect()
 }
@@ -244,7 +244,8 @@ pub fn all_judgements(checks: &[StudyCheck]) -> Table {
             (false, CheckEnd::HeldBack) => (Mood::Note, "not run"),
             (false, _) => (Mood::Fail, "fail"),
         };
-        let reason: Vec<String> = std::iter::once(headline(check)).chain(check.told_inputs()).collect();
+        let reason: Vec<String> =
+            std::iter::once(headline(check)).chain(check.sentence_on_inputs()).collect();
         whole.rows.push(vec![
             check.study.as_str().into(),
             Cell::Verdict(mood, word.to_owned()),

@@ -47,7 +47,7 @@ pub fn junit(checks: &[StudyCheck]) -> Result<String, SerializeError> {
         }
         let (agrees, sentence) = match &check.golden_problem {
             None => {
-                let inputs = check.told_inputs().into_iter();
+                let inputs = check.sentence_on_inputs().into_iter();
                 let sentences: Vec<String> = inputs.chain(check.groups.iter().map(sentence)).collect();
                 (sentences.is_empty(), sentences.join(". "))
             }

@@ -1,5 +1,6 @@
 //! Whether an external result is complete: missing parts make an error small.
 
+use crate::import::nodes::{SAME_PLACE, levels};
 use crate::import::{RIM, SampledState};
 use crate::measure::fields::{ExactFields, resolution};
 use crate::score::coverage;
@@ -199,8 +200,8 @@ impl Whole<'_> {
     /// A note where samples lie at one height, or along a few verticals of a layer that were chosen for display.
     pub fn profiles(&self, states: &[SampledState]) -> Option<String> {
         let state = states.first().filter(|state| !state.initial_height.is_empty())?;
-        let heights = coverage::lines(&state.initial_height, self.parameters.height);
-        let distances = coverage::lines(&state.initial_distance, self.parameters.length);
+        let heights = levels(&state.initial_height, self.parameters.height);
+        let distances = levels(&state.initial_distance, self.parameters.length);
         let all = |lines: &[f64]| lines.iter().map(|line| rounded(*line)).collect::<Vec<_>>().join(", ");
         let place = if heights.len() == 1 {
             let axis = if self.reference.row().axis == Axis::AlongSlab { "x" } else { "y" };
@@ -223,7 +224,7 @@ impl Whole<'_> {
         let bottom = place(base, 0.0);
         let top = place(surface, self.parameters.height);
         let what_is_bare = |state: &SampledState| {
-            let lines = coverage::lines(&state.initial_height, self.parameters.height);
+            let lines = levels(&state.initial_height, self.parameters.height);
             Some(match coverage::open_end(&lines, self.parameters.height, are_nodes)? {
                 End::Top => {
                     format!("no sample lies on {top}: the nodes have no row there, but one on {base}")
@@ -297,7 +298,7 @@ fn bare_along(
     can_scatter: bool,
     are_chosen: impl Fn(&[f64]) -> bool,
 ) -> Option<Bare> {
-    let lines = coverage::lines(places, extent);
+    let lines = levels(places, extent);
     let is_scattered = can_scatter && 2 * lines.len() > places.len() && lines.len() > 2 * PER_BIN;
     match (are_chosen(&lines), is_scattered) {
         (true, _) => None,
@@ -338,11 +339,10 @@ pub fn uneven_meshes(
     let per_cell: Vec<f64> = meshes
         .iter()
         .map(|(cells, state)| {
-            let lines = coverage::lines(&state.initial_height, height);
+            let lines = levels(&state.initial_height, height);
             // Nodes have one more than there are spacings.
-            let reaches = |line: Option<&f64>, end: f64| {
-                line.is_some_and(|y| (y - end).abs() <= coverage::SAME_PLACE * height)
-            };
+            let reaches =
+                |line: Option<&f64>, end: f64| line.is_some_and(|y| (y - end).abs() <= SAME_PLACE * height);
             let nodes = reaches(lines.first(), 0.0) && reaches(lines.last(), height);
             (lines.len() - usize::from(nodes)) as f64 / *cells as f64
         })

@@ -1,6 +1,7 @@
 //! Stretches of a column or layer without samples, and samples of its top.
 
 use crate::import::SampledState;
+use crate::import::nodes::{SAME_PLACE, levels};
 use oedometer_exact::ColumnParameters;
 use oedometer_wording::rounded;
 
@@ -9,8 +10,6 @@ const BARE: f64 = 1.5;
 /// [`BARE`] for a gap at an end of the column: samples stand half a spacing from
 /// it, or a whole one where the value at the end is prescribed.
 const BARE_AT_END: f64 = 1.25;
-/// Places closer than this share of the extent are one.
-pub(crate) const SAME_PLACE: f64 = 1e-6;
 /// Spacings closer than this, relative, are equal.
 const SAME_SPACING: f64 = 0.02;
 /// Share of the next spacing from which on a gap at an end is a whole spacing: cells shrink by less than a quarter from one to
@@ -33,14 +32,6 @@ pub struct Bare {
     pub from: f64,
     /// Where it ends.
     pub to: f64,
-}
-
-/// Distinct places of samples, in rising order.
-pub fn lines(places: &[f64], extent: f64) -> Vec<f64> {
-    let mut lines = places.to_vec();
-    lines.sort_by(f64::total_cmp);
-    lines.dedup_by(|place, before| *place - *before <= SAME_PLACE * extent);
-    lines
 }
 
 /// The longest bare stretch between 0 and `extent`, if there is one: larger than 1.5 times the
@@ -184,8 +175,8 @@ pub(crate) fn empty_bands(places: &[f64], extent: f64, count: usize) -> Vec<Bare
 /// two kinds of rows.
 pub fn incomplete_lattice(distances: &[f64], heights: &[f64], extent: [f64; 2]) -> Option<[usize; 2]> {
     let samples = heights.len();
-    let across = lines(distances, extent[0]).len();
-    let up = lines(heights, extent[1]);
+    let across = levels(distances, extent[0]).len();
+    let up = levels(heights, extent[1]);
     let crossings = across * up.len();
     if samples < 4 || samples >= crossings || 4 * samples < crossings {
         return None;
@@ -259,7 +250,7 @@ mod tests {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (seed >> 11) as f64 / (1_u64 << 53) as f64
         };
-        lines(&(0..count).map(|_| next()).collect::<Vec<f64>>(), 1.0)
+        levels(&(0..count).map(|_| next()).collect::<Vec<f64>>(), 1.0)
     }
 
     #[test]

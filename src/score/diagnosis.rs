@@ -41,31 +41,31 @@ pub fn diagnosis(
     let of_run = |states: &Vec<&SampledState>| {
         Given::of(&own, mapping, states).map_or(Vec::new(), |given| match step_numbers(states, &given) {
             Some(numbered) => vec![numbered],
-            None => told_of(&given, false),
+            None => mistakes_of(&given, false),
         })
     };
     let runs = runs(states);
-    let mut told = runs.iter().map(of_run);
-    let mut told = if runs.len() == 1 {
-        told.next().unwrap_or_default()
+    let mut mistakes = runs.iter().map(of_run);
+    let mut mistakes = if runs.len() == 1 {
+        mistakes.next().unwrap_or_default()
     } else {
-        let of_run = |(place, told): (usize, Vec<String>)| match told.join("; ") {
-            told if told.is_empty() => format!("run {} is right", place + 1),
-            told => format!("in run {} {told}", place + 1),
+        let of_run = |(place, mistakes): (usize, Vec<String>)| match mistakes.join("; ") {
+            mistakes if mistakes.is_empty() => format!("run {} is right", place + 1),
+            mistakes => format!("in run {} {mistakes}", place + 1),
         };
-        let told = told.enumerate().map(of_run).collect::<Vec<_>>().join("; ");
+        let mistakes = mistakes.enumerate().map(of_run).collect::<Vec<_>>().join("; ");
         vec![format!(
-            "there are {} {SEVERAL_RUNS}, with other values at the same times: {told}: was a second run appended?",
+            "there are {} {SEVERAL_RUNS}, with other values at the same times: {mistakes}: was a second run appended?",
             runs.len()
         )]
     };
     if reference.row().axis == Axis::OverDepth
         && let Some(uneven) = uneven_top(parameters, states)
     {
-        told.retain(|told| !told.contains(NO_MISTAKE));
-        told.push(uneven);
+        mistakes.retain(|mistake| !mistake.contains(NO_MISTAKE));
+        mistakes.push(uneven);
     }
-    told
+    mistakes
 }
 
 /// The outputs of every run in a file: where two stand at one time with other values, the later one is of the next run.
@@ -82,28 +82,28 @@ fn runs(states: &[SampledState]) -> Vec<Vec<&SampledState>> {
 }
 
 /// What seems wrong with a run, or with some of its outputs.
-fn told_of(given: &Given<'_>, is_part: bool) -> Vec<String> {
+fn mistakes_of(given: &Given<'_>, is_part: bool) -> Vec<String> {
     let Some(found) = given.thin().and_then(|thin| search::explanation(&thin, given, is_part)) else {
         return Vec::new();
     };
     let is_world = found.of.count > 0;
-    let mut told = sentences(&found, given);
+    let mut mistakes = sentences(&found, given);
     let columns = given.columns.iter().zip(&found.readings);
     let open: Vec<&Column> =
         columns.filter(|(_, reading)| reading.is_none()).map(|(column, _)| column).collect();
     let apart = (!is_part && !is_world).then(|| told_apart(&open, given)).flatten();
     if apart.is_some() {
-        told.extend(apart);
-        return told;
+        mistakes.extend(apart);
+        return mistakes;
     }
     for column in open {
-        told.extend(patterns::unexplained(column, given).or_else(|| match is_world {
+        mistakes.extend(patterns::unexplained(column, given).or_else(|| match is_world {
             _ if column.residual <= MOST => None,
             true => Some(format!("your {} does not match that: it is wrong in its own right", column.name)),
             false => patterns::place(column, given),
         }));
     }
-    told
+    mistakes
 }
 
 /// A sentence on times that count outputs, with the time factors that the columns are at.
@@ -146,7 +146,7 @@ fn told_apart(columns: &[&Column], given: &Given<'_>) -> Option<String> {
         return None;
     }
     let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
-    let there = told_of(&given.at_outputs(&wrong, &names)?, true).join("; ");
+    let there = mistakes_of(&given.at_outputs(&wrong, &names)?, true).join("; ");
     if worst <= MOST && there.is_empty() {
         return None;
     }
@@ -166,8 +166,8 @@ fn sentences(found: &Explanation, given: &Given<'_>) -> Vec<String> {
     };
     let columns = given.columns.iter().zip(&found.readings);
     let read = columns.filter_map(|(column, reading)| Some((reading.as_ref()?, column)));
-    let mut told: Vec<(&Reading, &Column)> = read.filter(is_told).collect();
-    told.sort_by_key(|(reading, _)| (reading.count, &reading.key));
+    let mut readings: Vec<(&Reading, &Column)> = read.filter(is_told).collect();
+    readings.sort_by_key(|(reading, _)| (reading.count, &reading.key));
     let none = Reading::default();
     let sentence = |(place, alike): (usize, &[(&Reading, &Column)])| {
         let (of, shared) = (alike[0].0, if place == 0 { &found.of } else { &none });
@@ -176,7 +176,7 @@ fn sentences(found: &Explanation, given: &Given<'_>) -> Vec<String> {
         let names: Vec<&str> = alike.iter().map(|(_, column)| column.name).collect();
         format!("{} {}{}: {asked}?", who(&names), of.said, found.of.said)
     };
-    told.chunk_by(|(a, _), (b, _)| a.key == b.key).enumerate().map(sentence).collect()
+    readings.chunk_by(|(a, _), (b, _)| a.key == b.key).enumerate().map(sentence).collect()
 }
 
 /// Columns by their names.

@@ -3,11 +3,10 @@
 mod other_water;
 
 use crate::case::{Case, Quantity, Sample};
-use crate::import::Absent;
 use crate::import::mapping::Mapping;
 use crate::import::nodes::counted_otherwise;
 use crate::import::run::Run;
-use crate::import::{SampledState, not_ended};
+use crate::import::{Absent, SampledState, not_ended};
 use crate::measure::round_off::SINGLE_PRECISION;
 use crate::record::ErrorRow;
 use crate::score::completeness::{Finding, Lack, Whole, interior_zeros, missing_times, uneven_meshes};
@@ -292,12 +291,12 @@ impl Scored {
             self.run.notes.extend(whole.profiles(states));
             let are_nodes = held.mapping.sample == Sample::Nodes;
             self.score.not_judged.extend(whole.end_without_sample(states, are_nodes));
-            let told = diagnosis(parameters, *reference, states, held.mapping);
-            let are_runs = told.iter().any(|sentence| sentence.contains(SEVERAL_RUNS));
+            let sentences = diagnosis(parameters, *reference, states, held.mapping);
+            let are_runs = sentences.iter().any(|sentence| sentence.contains(SEVERAL_RUNS));
             // Of a mixture nothing else is explained.
             let mixture = self.run.contradictions.first().filter(|_| !are_runs);
             self.score.diagnosis =
-                mixture.map_or(told, |why| vec![format!("{why}: was a second run appended?")]);
+                mixture.map_or(sentences, |why| vec![format!("{why}: was a second run appended?")]);
             let settles = has_settlement(parameters, *reference, states)?;
             self.note_absences(held.case, settles);
         }

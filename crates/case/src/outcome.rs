@@ -198,8 +198,8 @@ impl Status {
     }
 
     /// `ok`, or the failure's name.
-    pub fn name(&self) -> String {
-        self.failure().map_or("ok", |failure| failure.kind.name()).to_owned()
+    pub fn name(&self) -> &'static str {
+        self.failure().map_or("ok", |failure| failure.kind.name())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::import::given_files::files_of;
 use crate::import::mapping::{Axes, Mapping};
-use crate::import::nodes::counted_otherwise;
+use crate::import::nodes::{EVEN, SAME_PLACE, counted_otherwise, levels};
 use crate::import::raw_row::SolvedBody;
 use crate::import::run::Run;
 use crate::import::runs::runs_of;
@@ -17,10 +17,6 @@ use std::path::PathBuf;
 
 /// Multiple of the load that no pressure reaches.
 const IMPOSSIBLE: f64 = 100.0;
-/// Places closer than this share of the height are one.
-const SAME_PLACE: f64 = 1e-6;
-/// Gaps between places that differ by less than this share are even.
-const EVEN: f64 = 1e-3;
 
 /// A result as it was read.
 #[derive(Debug)]
@@ -193,7 +189,7 @@ fn other_mesh(case: &Case, sample: Sample, state: &SampledState) -> Option<Strin
         Sample::Centres => 0,
         Sample::Points | Sample::Surface => return None,
     };
-    let places = sorted(&state.initial_height, case.column.height);
+    let places = levels(&state.initial_height, case.column.height);
     let (heights, most) = (places.len(), case.cells + nodes);
     let gap = |pair: &[f64]| pair[1] - pair[0];
     let gaps = || places.windows(2).map(gap);
@@ -226,14 +222,6 @@ fn other_cells(case: &Case, shown: Option<usize>) -> Option<String> {
     ))
 }
 
-/// The places that differ, in rising order.
-fn sorted(places: &[f64], extent: f64) -> Vec<f64> {
-    let mut sorted = places.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.dedup_by(|later, earlier| *later - *earlier <= SAME_PLACE * extent);
-    sorted
-}
-
 /// A pressure that the load cannot cause, in a body without self-weight.
 fn beyond_the_load(case: &Case, state: &SampledState) -> Option<String> {
     let most = IMPOSSIBLE * case.column.pressure_scale().abs();
@@ -250,16 +238,20 @@ fn beyond_the_load(case: &Case, state: &SampledState) -> Option<String> {
 
 /// An error of the import, distinguished if it is about a value that is not finite.
 fn why_unread(error: &ImportError) -> Unread {
-    let told = error.to_string();
+    let sentence = error.to_string();
     let is_value = matches!(error, ImportError::Content { .. });
-    if is_value && names_no_finite_number(&told) { Unread::NotFinite(told) } else { Unread::Unreadable(told) }
+    if is_value && names_no_finite_number(&sentence) {
+        Unread::NotFinite(sentence)
+    } else {
+        Unread::Unreadable(sentence)
+    }
 }
 
 /// Whether a sentence of the import names a value that is infinite or no number: quoted, or at the end of `is`.
-fn names_no_finite_number(told: &str) -> bool {
+fn names_no_finite_number(sentence: &str) -> bool {
     let is_it = |word: &str| word.parse::<f64>().is_ok_and(|number| !number.is_finite());
-    let quoted = told.split('`').skip(1).step_by(2).any(is_it);
-    let said = told.split(" is ").skip(1).filter_map(|rest| rest.split([' ', ';', ',']).next());
+    let quoted = sentence.split('`').skip(1).step_by(2).any(is_it);
+    let said = sentence.split(" is ").skip(1).filter_map(|rest| rest.split([' ', ';', ',']).next());
     quoted || said.into_iter().any(is_it)
 }
 

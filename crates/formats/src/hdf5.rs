@@ -374,13 +374,13 @@ fn field_of(record: &[u8], from: u64, size: usize) -> Result<&[u8], String> {
 }
 
 fn damaged(error: &hdf5_pure::Error) -> String {
-    let told = error.to_string();
-    if ["not supported", "nsupported", "virtual"].iter().any(|word| told.contains(word)) {
+    let message = error.to_string();
+    if ["not supported", "nsupported", "virtual"].iter().any(|word| message.contains(word)) {
         return format!(
-            "its HDF5 uses a feature that is not read ({told}): write the numbers themselves, like `g[\"p\"] = f[\"p\"][:]` of h5py"
+            "its HDF5 uses a feature that is not read ({message}): write the numbers themselves, like `g[\"p\"] = f[\"p\"][:]` of h5py"
         );
     }
-    format!("its HDF5 is damaged: {told}")
+    format!("its HDF5 is damaged: {message}")
 }
 
 /// Whether a path is that of a data set, or ends as it does.

@@ -258,7 +258,7 @@ impl Listing<'_> {
 /// Total size of files in bytes, each counted once.
 fn size_of_all(files: &[PathBuf]) -> usize {
     let once: HashSet<&PathBuf> = files.iter().collect();
-    let size = |file: &PathBuf| std::fs::metadata(file).map_or(0, |told| told.len());
+    let size = |file: &PathBuf| std::fs::metadata(file).map_or(0, |metadata| metadata.len());
     usize::try_from(once.into_iter().map(size).sum::<u64>()).unwrap_or(usize::MAX)
 }
 

@@ -61,8 +61,8 @@ pub(crate) fn named(head: &[u8], kind: Kind) -> Option<String> {
         return Some("it is a tar archive: unpack it first".to_owned());
     }
     let begins = |begin: &[u8]| start.get(..begin.len()).is_some_and(|part| part.eq_ignore_ascii_case(begin));
-    if let Some((_, told)) = NAMED.iter().find(|(begin, _)| begins(begin)) {
-        return Some((*told).to_owned());
+    if let Some((_, sentence)) = NAMED.iter().find(|(begin, _)| begins(begin)) {
+        return Some((*sentence).to_owned());
     }
     if head.starts_with(b"    1C") || head.starts_with(b"    1U") {
         return Some(FRD.to_owned());

@@ -8,8 +8,7 @@ use crate::cli::output::{
     TableFormat, append, is_on, json_of, path_in, print_coloured, print_data, say, terminal_width,
     write_document,
 };
-use crate::cli::place::DEFAULT_RESULTS;
-use crate::cli::place::{StudyArguments, chosen_as, golden_folder, golden_of};
+use crate::cli::place::{DEFAULT_RESULTS, StudyArguments, chosen_as, golden_folder, golden_of};
 use crate::cli::running::{jobs_of, run_ci_tier};
 use crate::cli::study_files::load_sound;
 use crate::cli::trust::{self, TrustArguments};

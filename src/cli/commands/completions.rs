@@ -24,7 +24,7 @@ fn with_names(command: clap::Command) -> clap::Command {
     let references: Vec<&str> = ReferenceKind::ALL.iter().map(|kind| kind.name()).collect();
     let scenes: Vec<&str> = SCENES.iter().map(|scene| scene.name).collect();
     let with_textbook = |names: &[&'static str]| [names, &TextbookProblem::NAMES].concat();
-    let integrators = IntegratorKind::ALL.iter().map(|integrator| integrator.name()).collect();
+    let integrators = IntegratorKind::NAMES.to_vec();
     let named = [
         ("method", lasting(Method::names())),
         ("integrator", integrators),

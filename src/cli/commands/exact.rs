@@ -8,13 +8,12 @@ use crate::cli::study_files::tell_warnings;
 use crate::study::asked::Asked;
 use crate::study::overrides::{Assignments, numbers, times};
 use clap::ValueEnum;
-use oedometer_exact::Accuracy;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::footing::LOAD_FACTOR;
 use oedometer_exact::mandel::Mandel;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
-use oedometer_exact::{TextbookProblem, consolidation};
+use oedometer_exact::{Accuracy, TextbookProblem, consolidation};
 use oedometer_scenes::scene::Clock;
 use oedometer_wording::{count_of, typed};
 

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 #[derive(serde::Serialize)]
 struct Row {
     case: String,
-    status: String,
+    status: &'static str,
     method: String,
     integrator: &'static str,
     cells: usize,

@@ -231,7 +231,7 @@ const OWN_OPTIONS: [(&str, &str); 5] = [
 /// The JSON of `solve`: the record without its snapshots, the essentials first.
 #[derive(serde::Serialize)]
 struct SolveJson<'a> {
-    status: String,
+    status: &'static str,
     #[serde(flatten)]
     counters: Counters,
     wall_seconds: Option<f64>,

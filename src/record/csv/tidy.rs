@@ -94,7 +94,7 @@ fn case_fields(study: &str, record: &Record) -> Vec<String> {
         format!("{:e}", record.step_sizes.largest),
         record.counters.steps.to_string(),
         record.counters.point_updates.to_string(),
-        record.status.name(),
+        record.status.name().to_owned(),
         record.provenance.sources.clone(),
     ]);
     fields

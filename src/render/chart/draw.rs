@@ -1,5 +1,6 @@
 //! Draws a figure: its layout in pixels, then layer over layer from the back to the front.
 
+use crate::case::grouping::distinct;
 use crate::render::RenderError;
 use crate::render::chart::axis::{Ends, PlacedAxis, Reason, TICK_FONT};
 use crate::render::chart::ends::{end_names, end_names_width};
@@ -113,7 +114,7 @@ pub(super) fn ends(chart: &Chart) -> (Ends, Ends) {
 
 /// Sentences on what the figure cannot show.
 fn notes(chart: &Chart, x: &Ends, y: &Ends) -> Vec<String> {
-    let mut lost: BTreeMap<Reason, (usize, Vec<&str>)> = BTreeMap::new();
+    let mut lost: BTreeMap<Reason, Vec<&str>> = BTreeMap::new();
     for series in chart.series.iter().filter(|series| series.style != Style::Context) {
         for &(a, b) in &series.points {
             let reason = match (x.visible(a), y.visible(b)) {
@@ -124,17 +125,13 @@ fn notes(chart: &Chart, x: &Ends, y: &Ends) -> Vec<String> {
             if reason == Reason::Outside && !matches!(series.style, Style::Markers | Style::LineAndMarkers) {
                 continue;
             }
-            let (count, names) = lost.entry(reason).or_default();
-            *count += 1;
-            if !names.contains(&series.name.as_str()) {
-                names.push(&series.name);
-            }
+            lost.entry(reason).or_default().push(&series.name);
         }
     }
-    let total: usize = lost.values().map(|(count, _)| count).sum();
-    let reasons = lost
-        .iter()
-        .map(|(reason, (count, names))| format!("{count} {} ({})", reason.words(), names.join(", ")));
+    let total: usize = lost.values().map(Vec::len).sum();
+    let reasons = lost.into_iter().map(|(reason, names)| {
+        format!("{} {} ({})", names.len(), reason.words(), distinct(names).join(", "))
+    });
     let reasons = reasons.collect::<Vec<_>>().join("; ");
     let values = if total == 1 { "value" } else { "values" };
     let mut notes: Vec<String> = Vec::new();

@@ -137,7 +137,7 @@ pub(super) fn elements(chart: &Chart, rows: &ChartRows, is_narrow: bool) -> Resu
                 wide_row(area, chart, (place, row), (&places, &looks), top)
             }
         })?;
-        out += &group("", &told(chart, place, row), &drawn);
+        out += &group("", &description(chart, place, row), &drawn);
     }
     Ok((size, out))
 }
@@ -271,7 +271,7 @@ fn markers(area: &Area<'_>, chart: &Chart, (row, looks): (usize, &[Look]), place
 }
 
 /// What a row says, for a pointer that rests on it and for those who cannot see it.
-fn told(chart: &Chart, place: usize, row: &ChartRow) -> String {
+fn description(chart: &Chart, place: usize, row: &ChartRow) -> String {
     let series = chart.series.iter().enumerate().map(|(number, series)| {
         let at = series.points.iter().find(|(_, at)| *at == place as f64);
         let word = row.without.get(number).map_or("", String::as_str);

@@ -9,10 +9,9 @@ pub use race::matrix_page;
 
 use crate::history::comparison::StudyComparison;
 use crate::judge::study_results::StudyResults;
-use crate::questions::answers_with;
 use crate::questions::expected::EXPECTED;
 use crate::questions::finding::{Finding, Place};
-use crate::questions::sentence;
+use crate::questions::{answers_with, sentence};
 use crate::race::RaceFindings;
 use crate::record::provenance::{Origins, Provenance};
 use crate::render::RenderError;

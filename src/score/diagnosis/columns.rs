@@ -4,7 +4,7 @@ use super::hypotheses::{Scale, scales};
 use super::world::{Fields, World};
 use crate::import::SampledState;
 use crate::import::mapping::Mapping;
-use crate::score::coverage::lines;
+use crate::import::nodes::levels;
 
 /// Number of outputs that are examined, spread over all of them.
 const OUTPUTS: usize = 12;
@@ -327,7 +327,7 @@ impl<'a> Given<'a> {
             column.outputs.extend(values.iter().map(|_| set.output));
             first += set.heights.len();
             if !values.is_empty() {
-                rows = rows.max(lines(&set.heights, parameters.height).len());
+                rows = rows.max(levels(&set.heights, parameters.height).len());
             }
         }
         column.exact = column.of_itself(predicted);

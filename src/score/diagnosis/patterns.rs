@@ -5,7 +5,7 @@ use super::hypotheses::{END, START};
 use super::readings::Reading;
 use super::search::FLOOR;
 use super::{NO_MISTAKE, digits, listed, shown};
-use crate::score::coverage::lines;
+use crate::import::nodes::levels;
 use oedometer_wording::rounded;
 
 /// Most samples in a row that have one sign of an alternating pressure: those of a cell.
@@ -67,7 +67,7 @@ fn blank(column: &Column, given: &Given<'_>) -> Option<Reading> {
     let (place, asked) = match (whole(&column.outputs), whole(&rank(&column.heights, height))) {
         (Some(outputs), _) => (all_of("t", outputs, &given.times, "s"), "was this output not written"),
         (_, Some(rows)) if rows.len() < 3 => {
-            (all_of("y", rows, &lines(&column.heights, height), "m"), missing)
+            (all_of("y", rows, &levels(&column.heights, height), "m"), missing)
         }
         _ => (String::new(), if blank == 0.0 { MID_SIDE } else { missing }),
     };
@@ -113,7 +113,7 @@ fn checkerboard(column: &Column, given: &Given<'_>) -> Option<Reading> {
 
 /// Numbers of the lines of places on which values stand, counted from 0.
 fn rank(places: &[f64], extent: f64) -> Vec<usize> {
-    let lines = lines(places, extent);
+    let lines = levels(places, extent);
     places.iter().map(|place| lines.partition_point(|line| *line < place - 1e-6 * extent)).collect()
 }
 
@@ -150,7 +150,7 @@ pub fn unexplained(column: &Column, given: &Given<'_>) -> Option<String> {
         column.factor(&varying, &exact, None) * column.size(&exact, None) / column.size(&varying, None);
     let is_unlike = values.len() >= FEW && alike.abs() < UNLIKE && place(column, given).is_none();
     let array = "is it the wrong array";
-    let told = if column.is_zero() {
+    let fault = if column.is_zero() {
         let cause = if column.field.is_stress() { END } else { START };
         let or = format!(", or {}", cause.asked);
         format!("is 0 everywhere: {array}{}", if given.columns.len() == 1 { &or } else { "" })
@@ -163,7 +163,7 @@ pub fn unexplained(column: &Column, given: &Given<'_>) -> Option<String> {
     } else {
         return None;
     };
-    Some(format!("your {} {told}?", column.name))
+    Some(format!("your {} {fault}?", column.name))
 }
 
 /// Where a residual without a cause sits, if it sits in one place.
@@ -175,7 +175,7 @@ pub fn place(column: &Column, given: &Given<'_>) -> Option<String> {
         let there: Vec<f64> = off.iter().zip(&column.heights).map(of_row).collect();
         column.size(&there, None) > IN_ONE_PLACE * column.size(&off, None)
     };
-    let rows = lines(&column.heights, height);
+    let rows = levels(&column.heights, height);
     let row = rows.iter().find(|row| off.len() >= FEW && rows.len() > 1 && is_row(row))?;
     let percent = digits((100.0 * column.residual).round());
     let at = rounded(*row);

@@ -1,14 +1,21 @@
 //! Tests of the checks of a study, on texts.
 
+use crate::study::check::Study;
+use crate::study::file::StudySource;
+
+/// The study of a text, or what is wrong with it.
+fn of_text(text: String) -> Result<Study, String> {
+    Study::check(&StudySource { name: "t.toml".to_owned(), text }).map_err(|error| error.to_string())
+}
+
 mod point_sets {
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
+    use super::*;
 
     fn checked(scene: &str, method: &str, more: &str) -> Result<Study, String> {
         let text = format!(
             "title = \"t\"\nscene = \"{scene}\"\ncolumn.load = 1e3\n[[sweep]]\nmethod = [{method}]\ncells = [4]\n{more}\n"
         );
-        Study::check(&StudySource { name: "t.toml".to_owned(), text }).map_err(|error| error.to_string())
+        of_text(text)
     }
 
     #[test]
@@ -95,15 +102,14 @@ mod point_sets {
 }
 
 mod strains {
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
+    use super::*;
 
     fn checked(column: &str, sweep: &str) -> Result<Study, String> {
         let text = format!(
             "title = \"t\"\nscene = \"xie-leo\"\n[column]\n{column}\n[[sweep]]\nmethod = [\"MPM\"]\n\
              integrator = [\"implicit\"]\ncells = [4]\n{sweep}\n"
         );
-        Study::check(&StudySource { name: "t.toml".to_owned(), text }).map_err(|error| error.to_string())
+        of_text(text)
     }
 
     #[test]
@@ -149,15 +155,14 @@ mod strains {
 }
 
 mod labels {
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
+    use super::*;
 
     fn labels(sweep: &str) -> Vec<String> {
         let text = format!(
             "title = \"t\"\nscene = \"terzaghi\"\n[[sweep]]\nmethod = [\"MPM\"]\nintegrator = [\"implicit\"]\n\
              cells = [4]\ntime_step = [{{ growth = 0.1 }}]\n{sweep}\n"
         );
-        let study = Study::check(&StudySource { name: "t.toml".to_owned(), text }).expect("sound");
+        let study = of_text(text).expect("sound");
         study.planned.iter().map(|planned| planned.case.label()).collect()
     }
 
@@ -182,9 +187,7 @@ mod labels {
             let text = format!(
                 "title = \"t\"\nscene = \"terzaghi\"\n[[sweep]]\nmethod = [\"MPM\"]\ncells = [4]\n{sweep}\n"
             );
-            Study::check(&StudySource { name: "t.toml".to_owned(), text }).expect("sound").planned[0]
-                .case
-                .clone()
+            of_text(text).expect("sound").planned[0].case.clone()
         };
         let (alone, among) = (of("porosity = [0.4]"), of("porosity = [0.4, 0.5]"));
         assert_ne!(alone.label(), among.label());
@@ -193,16 +196,14 @@ mod labels {
 }
 
 mod answers {
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
+    use super::*;
 
     fn said(expectation: &str) -> Option<String> {
         let text = format!(
             "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1, 0.2]\n\n[[sweep]]\n\
              method = [\"MPM\", \"GIMP\"]\nintegrator = [\"implicit\"]\ncells = [4, 8, 16]\n\n{expectation}\n"
         );
-        let source = StudySource { name: "t.toml".to_owned(), text };
-        Study::check(&source).err().map(|error| error.to_string())
+        of_text(text).err()
     }
 
     #[test]
@@ -229,14 +230,13 @@ mod answers {
 }
 
 mod results {
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
+    use super::*;
 
     fn checked(result: &str) -> Result<Study, String> {
         let text = format!(
             "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n\n[[result]]\n{result}\n"
         );
-        Study::check(&StudySource { name: "t.toml".to_owned(), text }).map_err(|error| error.to_string())
+        of_text(text)
     }
 
     #[test]
@@ -279,8 +279,7 @@ mod results {
 }
 
 mod expectations_that_cannot_be_judged {
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
+    use super::*;
 
     /// A study of meshes or of steps with an expectation.
     fn checked(swept: &str, expected: &str) -> Result<Study, String> {
@@ -288,7 +287,7 @@ mod expectations_that_cannot_be_judged {
             "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = [\"MPM\"]\n\
              integrator = [\"implicit\"]\n{swept}\n\n[[expect]]\ntime_factor = 0.1\n{expected}\n"
         );
-        Study::check(&StudySource { name: "t.toml".to_owned(), text }).map_err(|error| error.to_string())
+        of_text(text)
     }
 
     const STEPS: &str = "cells = [8]\ntime_step = [{ growth = 0.1 }, { growth = 0.05 }, { growth = 0.025 }, { growth = 0.0125 }]";
@@ -334,8 +333,7 @@ mod expectations_that_cannot_be_judged {
 }
 
 mod defaults {
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
+    use super::*;
 
     const STUDY: &str = "title = 't'\nscene = 'terzaghi'\ncase_seconds = 77.0\noutput.time_factors = [0.1]\n\
                          {solver}\n[[sweep]]\nmethod = ['MPM', 'toy']\nintegrator = ['implicit']\n\
@@ -344,7 +342,7 @@ mod defaults {
 
     fn checked(solver: &str, demand: &str) -> Study {
         let text = STUDY.replace("{solver}", &format!("{SOLVER}{solver}")).replace("{demand}", demand);
-        let study = Study::check(&StudySource { name: "t.toml".to_owned(), text });
+        let study = of_text(text);
         study.unwrap_or_else(|error| panic!("{error}"))
     }
 
@@ -397,8 +395,7 @@ mod defaults {
 
         let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
                     integrator = ['implicit']\ncells = [2, 4, 8]\n[[expect_case]]\ncells = 4\nstatus = 'unstable'\n";
-        let study =
-            Study::check(&StudySource { name: "t.toml".to_owned(), text: text.to_owned() }).expect("sound");
+        let study = of_text(text.to_owned()).expect("sound");
         assert_eq!(study.cases(Tier::Full).len(), 3);
         for mut record in crate::campaign::runner::records_of(text) {
             for kind in [FailureKind::Unstable, FailureKind::TimedOut] {
@@ -411,15 +408,15 @@ mod defaults {
 }
 
 mod questions {
-    use crate::study::check::Study;
-    use crate::study::file::{GoldenRule, StudySource};
+    use super::*;
+    use crate::study::file::GoldenRule;
 
     fn checked(head: &str, tables: &str) -> Result<Study, String> {
         let text = format!(
             "title = 't'\nscene = 'terzaghi'\n{head}\noutput.time_factors = [0.1]\n{tables}\n[[sweep]]\nmethod = ['MPM']\n\
              integrator = ['implicit']\ncells = [4, 8]\n"
         );
-        Study::check(&StudySource { name: "t.toml".to_owned(), text }).map_err(|error| error.to_string())
+        of_text(text)
     }
 
     #[test]

@@ -1,7 +1,9 @@
 use super::*;
 use crate::identity::LONGEST_VERSION;
 use crate::import::RIM;
+use oedometer_case::Task;
 use oedometer_case::solver::Attached;
+use oedometer_scenes::{COSINE_LAYER, MANDEL, TERZAGHI};
 use std::path::Path;
 
 /// A solver in a folder by a command, with the convention's mapping.
@@ -40,8 +42,6 @@ fn state(places: &[[f64; 2]], displacement: &[f64], curve: Option<f64>) -> Sampl
 
 #[test]
 fn a_settlement_is_that_of_the_curve_or_of_the_sample_at_the_surface_under_the_crest() {
-    use oedometer_case::Task;
-    use oedometer_scenes::{COSINE_LAYER, MANDEL, TERZAGHI};
     let settled = |scene, state: SampledState| {
         let settlement = snapshot_of(&Case::seed(Task::Solve, scene), Sample::Points, &state).settlement;
         (!settlement.is_nan()).then_some(settlement)
@@ -72,8 +72,6 @@ fn a_settlement_is_that_of_the_curve_or_of_the_sample_at_the_surface_under_the_c
 
 #[test]
 fn samples_go_where_their_kind_is_looked_for_with_every_field_of_their_own() {
-    use oedometer_case::Task;
-    use oedometer_scenes::{COSINE_LAYER, TERZAGHI};
     let given = SampledState {
         time: 8.0,
         volume: vec![2.0],
@@ -106,10 +104,8 @@ fn samples_go_where_their_kind_is_looked_for_with_every_field_of_their_own() {
 #[cfg(unix)]
 mod runs {
     use super::*;
-    use oedometer_case::Task;
     use oedometer_case::outcome::Status;
     use oedometer_problem::outcome::FailureKind;
-    use oedometer_scenes::TERZAGHI;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     /// A case on two cells with one output.

@@ -67,13 +67,13 @@ impl<'a> Course<'a> {
 
     /// Leaves out states that repeat another one, and returns a sentence for each contradiction.
     pub fn settle(&mut self) -> Vec<String> {
-        let mut told = self.near_states();
-        told.extend(self.mixed_runs());
-        if told.is_empty() {
-            told.extend(self.times_that_go_back());
+        let mut sentences = self.near_states();
+        sentences.extend(self.mixed_runs());
+        if sentences.is_empty() {
+            sentences.extend(self.times_that_go_back());
         }
-        told.truncate(MOST);
-        told
+        sentences.truncate(MOST);
+        sentences
     }
 
     fn time(&self, instant: usize) -> f64 {
@@ -91,7 +91,7 @@ impl<'a> Course<'a> {
             own <= NEAR * self.time(at + 1) && widest.is_none_or(|widest| own <= NO_STEP * widest)
         };
         let near: Vec<usize> = (0..count.saturating_sub(1)).filter(is_near).collect();
-        let (mut told, mut repeated) = (Vec::new(), Vec::new());
+        let (mut sentences, mut repeated) = (Vec::new(), Vec::new());
         for at in near {
             let [first, second] = [at, at + 1].map(|at| self.time(at));
             let (share, rates) = ((second - first) / second, self.rates_beside(at));
@@ -102,7 +102,7 @@ impl<'a> Course<'a> {
             });
             match self.difference(&self.instants[at], &self.instants[at + 1], allowed) {
                 Difference::Explained { are_equal } => repeated.extend(are_equal.then_some(at + 1)),
-                Difference::Contradiction(values) => told.push(format!(
+                Difference::Contradiction(values) => sentences.push(format!(
                     "two states have the same time, t = {} s and {} s, and contradict each other{values}: \
                      keep the right run",
                     typed(first),
@@ -113,7 +113,7 @@ impl<'a> Course<'a> {
         for at in repeated.into_iter().rev() {
             self.instants.remove(at);
         }
-        told
+        sentences
     }
 
     /// How fast each quantity changes from the state before two, and to the one after them.
@@ -170,8 +170,8 @@ impl<'a> Course<'a> {
             before.iter().filter_map(|(place, rows)| Some((rows, after.get(place)?))).collect();
         if 2 * common.len() < before.len().min(after.len()) {
             let misfit = (0..4).find_map(|quantity| self.misfit(quantity, one, other, allowed[quantity]));
-            return misfit.map_or(Difference::Explained { are_equal: false }, |told| {
-                Difference::Contradiction(format!(": {told}"))
+            return misfit.map_or(Difference::Explained { are_equal: false }, |misfit| {
+                Difference::Contradiction(format!(": {misfit}"))
             });
         }
         let mut are_equal = before.len() == common.len() && after.len() == common.len();
@@ -285,7 +285,7 @@ impl<'a> Course<'a> {
         let first = |rows: &[usize]| rows.iter().map(|at| self.rank[*at]).min();
         listed.sort_by_key(|rows| first(rows));
         let row = |rows: &[usize]| first(rows).map(|place| &self.rows[self.order[place]]);
-        let mut told = Vec::new();
+        let mut sentences = Vec::new();
         for source in 0..self.origins.sources() {
             let of_source: Vec<&Vec<usize>> = (listed.iter().copied())
                 .filter(|rows| {
@@ -298,7 +298,7 @@ impl<'a> Course<'a> {
             }
             let back = pairs()
                 .find(|(before, after, pair)| after.time < before.time && self.overlap(pair[0], pair[1]));
-            told.extend(back.map(|(before, after, _)| {
+            sentences.extend(back.map(|(before, after, _)| {
                 format!(
                     "its times decrease: t = {} s ({}) comes after t = {} s ({}): keep one run if a restart \
                      or another run was appended, or sort the states by time",
@@ -309,7 +309,7 @@ impl<'a> Course<'a> {
                 )
             }));
         }
-        told
+        sentences
     }
 
     /// Whether the rows of a state follow each other.

@@ -3,16 +3,16 @@
 use crate::import::samples::SampledState;
 
 /// Places closer than this share of the extent are one.
-const SAME_PLACE: f64 = 1e-6;
+pub const SAME_PLACE: f64 = 1e-6;
 /// Gaps that differ by less than this share are even.
-const EVEN: f64 = 1e-3;
+pub(crate) const EVEN: f64 = 1e-3;
 /// Largest ratio of neighbouring gaps of a mesh that grows finer: others are places of some choice.
 const GRADED: f64 = 4.0;
 /// Fewest levels that have a spacing.
 const FEWEST: usize = 3;
 
 /// The different places along a direction, in rising order.
-fn levels(places: &[f64], extent: f64) -> Vec<f64> {
+pub fn levels(places: &[f64], extent: f64) -> Vec<f64> {
     let mut levels = places.to_vec();
     levels.sort_by(f64::total_cmp);
     levels.dedup_by(|later, earlier| *later - *earlier <= SAME_PLACE * extent);

@@ -134,7 +134,7 @@ impl Origins {
         let unit = if quantity < 2 { "Pa" } else { "m" };
         let values = rows.map(|row| row.values()[quantity]);
         let rounded = values.map(rounded);
-        let told = if rounded[0] == rounded[1] { values.map(typed) } else { rounded };
-        told.map(|value| format!("{value} {unit}"))
+        let shown = if rounded[0] == rounded[1] { values.map(typed) } else { rounded };
+        shown.map(|value| format!("{value} {unit}"))
     }
 }

@@ -148,11 +148,13 @@ impl Run {
         let matched = curve.attach(&mut self.states);
         self.contradictions.extend(curve.contradictions);
         let file = curve.file;
-        let is_told = curve.told.is_ended || self.unended.contains(&file);
-        for (own, of_curve) in [(&mut self.notes, curve.told.notes), (&mut self.doubts, curve.told.doubts)] {
-            for told in of_curve {
-                if !own.contains(&told) {
-                    own.push(told);
+        let is_told = curve.table_notes.is_ended || self.unended.contains(&file);
+        for (own, of_curve) in
+            [(&mut self.notes, curve.table_notes.notes), (&mut self.doubts, curve.table_notes.doubts)]
+        {
+            for sentence in of_curve {
+                if !own.contains(&sentence) {
+                    own.push(sentence);
                 }
             }
         }

@@ -42,10 +42,10 @@ fn run_of_tables(files: Vec<PathBuf>, mapping: &Mapping, body: SolvedBody) -> Re
     let (mut unended, mut notes, mut doubts) = (Vec::new(), Vec::new(), Vec::new());
     let mut origins = Origins::new(mapping);
     for (place, path) in files.iter().enumerate() {
-        let told = take_rows(path, place, mapping, body, &mut origins, &mut rows)?;
-        unended.extend((!told.is_ended).then(|| path.clone()));
-        notes.extend(told.notes);
-        doubts.extend(told.doubts);
+        let table_notes = take_rows(path, place, mapping, body, &mut origins, &mut rows)?;
+        unended.extend((!table_notes.is_ended).then(|| path.clone()));
+        notes.extend(table_notes.notes);
+        doubts.extend(table_notes.doubts);
     }
     let (states, contradictions) = states_of(&rows, &origins)?;
     let expected = Expected::of_states(&states);
@@ -68,9 +68,9 @@ fn run_of_curve(files: Vec<PathBuf>, mapping: &Mapping, body: SolvedBody) -> Res
         run.states = curve.states();
         run.contradictions = curve.contradictions;
         run.expected.settlement = true;
-        run.unended.extend((!curve.told.is_ended).then_some(curve.file));
-        run.notes = curve.told.notes;
-        run.doubts = curve.told.doubts;
+        run.unended.extend((!curve.table_notes.is_ended).then_some(curve.file));
+        run.notes = curve.table_notes.notes;
+        run.doubts = curve.table_notes.doubts;
     }
     Ok(run)
 }
@@ -189,12 +189,12 @@ impl Reading {
     /// Adds the states of another mesh.
     fn change_mesh(&mut self, other: Self) {
         let (own, others) = (&mut self.run, other.run);
-        let told =
+        let shown =
             |cells: Option<usize>| cells.map_or("another number of".to_owned(), |cells| cells.to_string());
         own.notes.push(format!(
             "its mesh changes with time: {} and {} cells over the height",
-            told(own.cells),
-            told(others.cells)
+            shown(own.cells),
+            shown(others.cells)
         ));
         own.has_changing_mesh = true;
         own.cells = own.cells.max(others.cells);
@@ -241,9 +241,9 @@ impl Reading {
         }
         self.run.notes.extend(frame.notes.iter().cloned());
         for doubt in frame.doubts.iter().chain(&columns.doubts) {
-            let told = format!("{}: {doubt}", step.file.display());
+            let doubt = format!("{}: {doubt}", step.file.display());
             if self.run.doubts.len() < MOST_DOUBTS {
-                self.run.doubts.push(told);
+                self.run.doubts.push(doubt);
             }
         }
         let (records, kind) = match listed {

@@ -93,7 +93,7 @@ impl<'a> Table<'a> {
     }
 
     /// What its numbers become by the unit that it states for a column, and what is told of that.
-    fn factor(&self, column: Column, place: usize, mapping: &Mapping, told: &mut TableNotes) -> f64 {
+    fn factor(&self, column: Column, place: usize, mapping: &Mapping, table_notes: &mut TableNotes) -> f64 {
         let name = self.header.get(place).unwrap_or_default();
         let stated = self.units.get(place).map(String::as_str).filter(|unit| !unit.is_empty());
         let said = match (stated, SaidUnit::in_name(name)) {
@@ -109,23 +109,23 @@ impl<'a> Table<'a> {
         match said {
             SaidUnit::AsMapped => 1.0,
             SaidUnit::Factor(factor, note) => {
-                told.notes.push(format!("{file}: {note}"));
+                table_notes.notes.push(format!("{file}: {note}"));
                 factor
             }
             SaidUnit::Unfit(doubt) => {
-                told.doubts.push(format!("{file}: {doubt}"));
+                table_notes.doubts.push(format!("{file}: {doubt}"));
                 1.0
             }
         }
     }
 
     /// Doubts about numbers of a column that may have signs between thousands.
-    fn doubt(&self, place: usize, told: &mut TableNotes) {
+    fn doubt(&self, place: usize, table_notes: &mut TableNotes) {
         if let Some(Some(Thousands { first, line, is_certain: false })) = self.thousands.get(place) {
             let column = excerpt(self.header.get(place).unwrap_or_default());
             let sign = if self.has_decimal_comma { "point" } else { "comma" };
             let whole = first.replace([',', '.'], "");
-            told.doubts.push(format!(
+            table_notes.doubts.push(format!(
                 "{}:{line}: the {sign} of `{first}` in the column `{column}` may be a thousands or a \
                  decimal separator; it is read as {whole}: write the numbers without it, or set `decimal` \
                  in [csv]",
@@ -387,19 +387,19 @@ pub fn take_rows(
              --set-time-step if the name has a step number"
         )));
     }
-    let mut told = TableNotes { is_ended: table.is_ended, ..TableNotes::default() };
+    let mut table_notes = TableNotes { is_ended: table.is_ended, ..TableNotes::default() };
     let factors = Column::ALL.map(|column| match places.columns[column as usize] {
         Some(place) => {
-            table.doubt(place, &mut told);
-            table.factor(column, place, mapping, &mut told)
+            table.doubt(place, &mut table_notes);
+            table.factor(column, place, mapping, &mut table_notes)
         }
         None => 1.0,
     });
     for set in &mut places.wide {
         for (column, of_heights) in &set.quantities {
             let factor = |place: &usize| {
-                table.doubt(*place, &mut told);
-                table.factor(*column, *place, mapping, &mut told)
+                table.doubt(*place, &mut table_notes);
+                table.factor(*column, *place, mapping, &mut table_notes)
             };
             set.factors.push(of_heights.iter().map(factor).collect());
         }
@@ -432,8 +432,8 @@ pub fn take_rows(
     if rows.len() == before {
         return Err(table.error("there are no rows".to_owned()));
     }
-    told.doubts.truncate(MOST_DOUBTS);
-    Ok(told)
+    table_notes.doubts.truncate(MOST_DOUBTS);
+    Ok(table_notes)
 }
 
 /// Adds the rows of a line with one column per height.
@@ -480,7 +480,7 @@ pub struct Curve {
     /// Its file.
     pub file: PathBuf,
     /// What is told of its file.
-    pub told: TableNotes,
+    pub table_notes: TableNotes,
 }
 
 impl Curve {
@@ -506,10 +506,10 @@ impl Curve {
         let (time, settlement) = (place(&series.t)?, place(&series.s)?);
         let unit = mapping.units.displacement.unwrap_or(mapping.units.length).metres();
         let upward = if series.sign == VerticalSense::Down { -unit } else { unit };
-        let mut told = TableNotes { is_ended: table.is_ended, ..TableNotes::default() };
+        let mut table_notes = TableNotes { is_ended: table.is_ended, ..TableNotes::default() };
         let mut factor = |column: Column, place: usize| {
-            table.doubt(place, &mut told);
-            table.factor(column, place, mapping, &mut told)
+            table.doubt(place, &mut table_notes);
+            table.factor(column, place, mapping, &mut table_notes)
         };
         let factors = [factor(Column::Time, time), factor(Column::Up, settlement)];
         let mut origins = Origins::of_curve(mapping);
@@ -530,7 +530,7 @@ impl Curve {
             return Err(table.error("there are no rows".to_owned()));
         }
         let (points, contradictions) = points_of(&rows, &origins)?;
-        Ok(Self { points, contradictions, file, told })
+        Ok(Self { points, contradictions, file, table_notes })
     }
 
     /// Gives each state the displacement of the surface at the nearest time of the curve; returns how many states got one.
