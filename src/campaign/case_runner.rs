@@ -55,13 +55,13 @@ impl<'a> CaseRunner<'a> {
     }
 
     /// The solver of a case, where that is not this program.
-    fn other(&self, case: &Case) -> Option<&dyn Solver> {
+    fn other_solver(&self, case: &Case) -> Option<&dyn Solver> {
         self.others.iter().find(|(name, _)| *name == case.method).map(|(_, solver)| &**solver)
     }
 
     /// What a finished record is to the solvers of now.
     pub fn standing(&self, record: &Record) -> Standing {
-        self.other(&record.case).unwrap_or(&self.this_program).standing(record.outside_run())
+        self.other_solver(&record.case).unwrap_or(&self.this_program).standing(record.outside_run())
     }
 
     /// Runs a case within the time that the study gives it; files that its solver leaves are kept in the store.
@@ -106,7 +106,7 @@ impl<'a> CaseRunner<'a> {
         store: Option<&RecordStore>,
         course: Course<'_>,
     ) -> Result<Outcome, ExactError> {
-        let Some(other) = self.other(case) else { return self.this_program.solve(case, &course) };
+        let Some(other) = self.other_solver(case) else { return self.this_program.solve(case, &course) };
         let place = store.map(|store| store.folder_of(&case.hash()));
         let _at_work = stop::begin();
         // It has a process group of its own, which no signal to this program reaches: from now on they are taken, and

@@ -127,12 +127,12 @@ fn study_files_of(folder: &Path) -> Vec<PathBuf> {
 
 /// A folder and all those above it, as they are reached from the current one.
 fn with_parents(folder: &Path) -> Vec<PathBuf> {
-    let depth = whole(folder).map_or(1, |whole| whole.ancestors().count());
+    let depth = absolute(folder).map_or(1, |folder| folder.ancestors().count());
     std::iter::successors(Some(folder.to_owned()), |folder| Some(above(folder))).take(depth).collect()
 }
 
-/// The whole path of a folder, where it is there.
-fn whole(folder: &Path) -> Option<PathBuf> {
+/// The absolute path of a folder, where it is there.
+fn absolute(folder: &Path) -> Option<PathBuf> {
     Path::new(".").join(folder).canonicalize().ok()
 }
 
@@ -151,7 +151,7 @@ pub fn folder_of_golden(file: Option<&Path>) -> PathBuf {
     let beside = file.and_then(Path::parent).unwrap_or(Path::new(""));
     let is_root = |folder: &PathBuf| folder.join(MARK).is_file() || folder.join(".git").exists();
     let folders = with_parents(beside);
-    let is_home = whole(beside).is_some_and(|beside| beside.ends_with(STUDIES));
+    let is_home = absolute(beside).is_some_and(|beside| beside.ends_with(STUDIES));
     let root = folders.iter().position(is_root).unwrap_or(usize::from(is_home));
     let mut searched = folders[..=root.min(folders.len() - 1)].to_vec();
     searched.push(PathBuf::new());

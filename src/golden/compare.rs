@@ -75,6 +75,11 @@ impl Difference {
         Some(if change.is_nan() { f64::INFINITY } else { change })
     }
 
+    /// Whether there is a value on both sides.
+    pub fn is_paired(&self) -> bool {
+        self.golden.is_some() && self.found.is_some()
+    }
+
     /// How many times its golden value it is, from the double on: a change over the larger value says nothing of that.
     pub fn growth(&self) -> Option<f64> {
         let times = self.found?.abs() / self.golden?.abs();

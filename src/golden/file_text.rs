@@ -59,7 +59,7 @@ fn decimal(value: f64) -> String {
 }
 
 /// A value with the digits that a file keeps; steps are whole numbers and keep all. Without the sign of a zero.
-pub(super) fn kept(measure: &Measure, value: f64) -> f64 {
+pub(super) fn rounded(measure: &Measure, value: f64) -> f64 {
     let digits = || format!("{value:.DIGITS$e}").parse().unwrap_or(value);
     if *measure == Measure::Steps { value } else { digits() + 0.0 }
 }
@@ -72,7 +72,7 @@ impl GoldenFile {
     pub fn to_text(&self) -> Result<String, GoldenTextError> {
         let values = self.values.iter().map(|(key, value)| {
             let column = Column::Values(key.measure.clone());
-            (&key.case, key.time, column, kept(&key.measure, *value))
+            (&key.case, key.time, column, rounded(&key.measure, *value))
         });
         let spreads = self.spread.iter().map(|(key, spread)| {
             let spread = format!("{spread:.1e}").parse().unwrap_or(*spread);
@@ -252,10 +252,10 @@ mod tests {
             (-1e-17, -1e-17),
             (1e300, 1e300),
         ] {
-            assert_eq!(kept(&pressure, value), wanted);
+            assert_eq!(rounded(&pressure, value), wanted);
         }
-        assert_eq!(kept(&pressure, -0.0).to_bits(), 0.0_f64.to_bits());
-        assert_eq!(kept(&Measure::Steps, 1_718_436_801.0), 1_718_436_801.0);
+        assert_eq!(rounded(&pressure, -0.0).to_bits(), 0.0_f64.to_bits());
+        assert_eq!(rounded(&Measure::Steps, 1_718_436_801.0), 1_718_436_801.0);
     }
 
     #[test]

@@ -138,7 +138,7 @@ impl StudyComparison {
         let differences = compare(&before, values_after);
         let (counters, errors): (Vec<&Difference>, Vec<&Difference>) = differences
             .iter()
-            .filter(|difference| difference.golden.is_some() && difference.found.is_some())
+            .filter(|difference| difference.is_paired())
             .partition(|difference| difference.key.measure == Measure::Steps);
         let grew = |difference: &&Difference| difference.found > difference.golden;
         let cost = Trend::of(counters.iter().any(|difference| !grew(difference)), counters.iter().any(grew));
@@ -153,10 +153,7 @@ impl StudyComparison {
             accuracy,
             cost,
             values: before.values.keys().filter(|key| values_after.contains_key(*key)).count(),
-            unpaired: differences
-                .iter()
-                .filter(|difference| difference.golden.is_none() || difference.found.is_none())
-                .count(),
+            unpaired: differences.iter().filter(|difference| !difference.is_paired()).count(),
             inputs,
             groups: groups_of(&differences, keys),
             changes: case_changes(&differences),
@@ -299,8 +296,7 @@ pub(crate) fn order_changes(
     after: &BTreeMap<GoldenKey, f64>,
     differences: &[Difference],
 ) -> Vec<OrderChange> {
-    let moved =
-        differences.iter().filter(|difference| difference.golden.is_some() && difference.found.is_some());
+    let moved = differences.iter().filter(|difference| difference.is_paired());
     let asked: BTreeSet<GoldenKey> =
         moved.flat_map(|difference| places(&difference.key)).map(|(key, _)| key).collect();
     let mut after = behaviours(after, &asked);

@@ -135,8 +135,7 @@ impl Step {
         step.error_index *= mean_ratio(before, golden, |key| key.measure.is_error());
         step.work_index *= mean_ratio(before, golden, |key| key.measure == Measure::Steps);
         let differences = compare(before, &golden.values);
-        let paired = |difference: &&Difference| difference.golden.is_some() && difference.found.is_some();
-        step.moved = differences.iter().filter(paired).count();
+        step.moved = differences.iter().filter(|one| one.is_paired()).count();
         step.unpaired = differences.len() - step.moved;
         let errors = differences.iter().filter(|one| one.key.measure.is_error());
         step.largest_change = errors.filter_map(Difference::relative_change).fold(0.0, f64::max);

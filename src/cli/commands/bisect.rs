@@ -124,9 +124,8 @@ fn skip(skipped: &mut Vec<String>, commit: &Commit, reason: &str) -> &'static st
 
 /// Values that differ beyond their tolerance: those that got worse, or all where none did.
 fn moved_values(right: &StudyState, wrong: &StudyState) -> Vec<Difference> {
-    let both = |difference: &Difference| difference.golden.is_some() && difference.found.is_some();
     let moved: Vec<Difference> =
-        compare(&right.golden, &wrong.golden.values).into_iter().filter(both).collect();
+        compare(&right.golden, &wrong.golden.values).into_iter().filter(Difference::is_paired).collect();
     let is_worse = |difference: &&Difference| difference.change == Change::Moved;
     let worse: Vec<Difference> = moved.iter().filter(is_worse).cloned().collect();
     if worse.is_empty() { moved } else { worse }

@@ -48,7 +48,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         Some((label, measure)) => (label, Some(measure)),
         None => (arguments.case.as_str(), None),
     };
-    let (study, case) = the_one(&studies, description)?;
+    let (study, case) = described_case(&studies, description)?;
     let file = chosen_as(&study.name, &chosen).unwrap_or(Path::new(&study.name));
     let record = record_of(study, case, file, &arguments.records)?;
     let golden = match golden_of(arguments.golden.as_deref(), &study.name, &chosen) {
@@ -71,7 +71,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 type Way<'a> = &'a dyn Fn(&&(&Study, &Case)) -> bool;
 
 /// The only case that a description fits.
-fn the_one<'a>(studies: &'a [Study], description: &str) -> anyhow::Result<(&'a Study, &'a Case)> {
+fn described_case<'a>(studies: &'a [Study], description: &str) -> anyhow::Result<(&'a Study, &'a Case)> {
     let all =
         studies.iter().flat_map(|study| study.cases(Tier::Full).into_iter().map(move |case| (study, case)));
     let all: Vec<(&Study, &Case)> = all.collect();
@@ -155,7 +155,7 @@ mod tests {
     }
 
     fn found(studies: &[Study], description: &str) -> Result<String, (Exit, String)> {
-        match the_one(studies, description) {
+        match described_case(studies, description) {
             Ok((study, case)) => Ok(format!("{}/{}", study.name, case.label())),
             Err(error) => Err((Exit::of(&error), error.to_string())),
         }

@@ -83,7 +83,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let records = records?;
     match records.as_slice() {
         [] => return Err(Ended::with(Exit::NothingSelected, "the command line describes no case")),
-        [record] => print_one(record, arguments.format)?,
+        [record] => print_run(record, arguments.format)?,
         _ => print_meshes(&study, &records, arguments.format)?,
     }
     if let Some(folder) = &arguments.fields {
@@ -126,7 +126,7 @@ fn write_all_fields(records: &[Record], folder: &Path) -> anyhow::Result<()> {
 }
 
 /// A run with its errors and checks.
-fn print_one(record: &Record, format: SolveFormat) -> anyhow::Result<()> {
+fn print_run(record: &Record, format: SolveFormat) -> anyhow::Result<()> {
     match format {
         SolveFormat::Csv => print_data(&csv_of(ERROR_COLUMNS, csv_rows(record))?),
         SolveFormat::Json => print_data(&json_of(&SolveJson::of(record))?),

@@ -163,7 +163,7 @@ impl PlacedAxis {
         let most = ((to - from).abs() / (room * TICK_FONT)).clamp(2.0, 12.0);
         let is_narrow = elementary::log10(ends.high / ends.low) < 0.75;
         let mut ticks = match (&axis.ticks, ends.scale) {
-            (Some(values), scale) => given(values, scale),
+            (Some(values), scale) => given_ticks(values, scale),
             (None, Scale::Log10) if !is_narrow => decades(&ends, most),
             (None, _) => even(&ends, most),
         };
@@ -230,7 +230,7 @@ fn is_power(value: f64) -> bool {
 const LONGEST_LABEL: usize = 8;
 
 /// Ticks at given values.
-fn given(ticks: &[(f64, Option<String>)], scale: Scale) -> Vec<Tick> {
+fn given_ticks(ticks: &[(f64, Option<String>)], scale: Scale) -> Vec<Tick> {
     let usable: Vec<_> = ticks.iter().filter(|(value, _)| drawable(*value, scale).is_ok()).collect();
     let is_plain = usable.iter().all(|(value, _)| *value == 0.0 || (1e-4..1e5).contains(&value.abs()));
     let label = |value: f64| match format!("{value}") {
@@ -263,8 +263,8 @@ fn even(ends: &Ends, most: f64) -> Vec<Tick> {
 /// Powers of ten with labels at all or at every so many, and minor ticks between them where they fit.
 fn decades(ends: &Ends, most: f64) -> Vec<Tick> {
     let (a, b) = (elementary::log10(ends.low), elementary::log10(ends.high));
-    let (first, last) = (whole((a - 1e-9).floor()), whole((b + 1e-9).ceil()));
-    let stride = whole(((b - a) / most).ceil().max(1.0));
+    let (first, last) = (whole_number((a - 1e-9).floor()), whole_number((b + 1e-9).ceil()));
+    let stride = whole_number(((b - a) / most).ceil().max(1.0));
     let is_plain = a > -3.2 && b < 3.2;
     let ten_to = |n: i32| if n < 0 { 1.0 / elementary::powi(10.0, -n) } else { elementary::powi(10.0, n) };
     let label = |m: i32, n: i32| match m {
@@ -300,7 +300,7 @@ fn power(value: f64, digits: Option<f64>) -> String {
         Some(digits) => format!("{mantissa:.*}", decimals(digits - n)),
         None => format!("{}", (mantissa * 1e3).round() / 1e3),
     };
-    let ten = format!("10{}", exponent(whole(n)));
+    let ten = format!("10{}", exponent(whole_number(n)));
     match text.as_str() {
         "1" => ten,
         "-1" => minus(format!("-{ten}")),
@@ -310,11 +310,11 @@ fn power(value: f64, digits: Option<f64>) -> String {
 
 /// Decimals down to the decimal place `digit`.
 fn decimals(digit: f64) -> usize {
-    usize::try_from(whole(-digit)).unwrap_or(0).min(15)
+    usize::try_from(whole_number(-digit)).unwrap_or(0).min(15)
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "the cast saturates, and exponents are small")]
-fn whole(x: f64) -> i32 {
+fn whole_number(x: f64) -> i32 {
     x.round() as i32
 }
 
@@ -466,7 +466,7 @@ mod tests {
         let placed = PlacedAxis::new(&axis, ends, (0.0, 500.0), false);
         let labels: Vec<_> = placed.ticks.into_iter().filter_map(|tick| tick.label).collect();
         assert_eq!(labels, ["0.2", "0.1", "0.05", "0.025"]);
-        let long = given(&[1.0 / 3.0, 0.015_625, 0.007_812_5].map(|value| (value, None)), Scale::Log10);
+        let long = given_ticks(&[1.0 / 3.0, 0.015_625, 0.007_812_5].map(|value| (value, None)), Scale::Log10);
         let long: Vec<_> = long.into_iter().filter_map(|tick| tick.label).collect();
         assert_eq!(long, ["0.3333", "0.015625", "0.007812"]);
     }

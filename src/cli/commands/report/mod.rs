@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let chosen = arguments.studies.chosen()?;
     let mut studies = load(&chosen, Some(&arguments.records))?;
     let reports = if arguments.from_records {
-        kept(&studies, arguments)?
+        stored_reports(&studies, arguments)?
     } else {
         arguments.trust.mark(&mut studies, &chosen);
         run_missing(&studies, arguments)?
@@ -186,7 +186,7 @@ fn tier_of(study: &Study, report: &RunReport) -> Tier {
 }
 
 /// The records there are, as they are.
-fn kept(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<RunReport>> {
+fn stored_reports(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<RunReport>> {
     let stores: Vec<RecordStore> =
         studies.iter().map(|study| RecordStore::new(&arguments.records, &study.name)).collect();
     for (study, store) in studies.iter().zip(&stores) {
