@@ -17,6 +17,8 @@ const VANISHED: f64 = 1e-6;
 const SEEN: f64 = 0.01;
 /// Largest relative error that a mesh of `N` rows explains, times N².
 const MESH: f64 = 0.3;
+/// Largest shift of times that a mesh explains, over the time in which water diffuses through a row.
+const MOMENT: f64 = 0.25;
 /// Share of the size of a column that an output has at least, where its own error is judged.
 const SHARE_OF_OUTPUT: f64 = 0.05;
 /// A column with at most this residual is right, and never explained.
@@ -342,6 +344,15 @@ impl<'a> Given<'a> {
     /// Whether a displacement or a settlement is there, which tells a stiffness from a permeability.
     pub fn moves(&self) -> bool {
         self.columns.iter().any(|column| !column.field.is_stress())
+    }
+
+    /// Whether times are off by no more than a mesh with these rows makes them: a pressure that begins at 0 at the drained
+    /// node has lost half a cell of water, as after π/16 h²/c_v.
+    pub fn is_moment_of_mesh(&self, moment: f64) -> bool {
+        let parameters = &self.own.parameters;
+        let rows = self.sets.iter().map(|set| lines(&set.heights, parameters.height).len()).max();
+        let row = parameters.height / rows.unwrap_or(2).saturating_sub(1).max(1) as f64;
+        moment.abs() < MOMENT * row * row / parameters.soil.coefficient_of_consolidation()
     }
 
     /// The first and the last time after the start, s; 0 where there is none.
