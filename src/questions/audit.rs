@@ -196,7 +196,7 @@ fn over_mesh(audit: &Audit) -> Figure {
     let points = || audit.pairings.iter().flat_map(|pairing| &pairing.pressure);
     let mut chart = Chart::new(
         format!(
-            "The pressure of {} of {} pairings still falls on the last mesh",
+            "The error of {} of {} pairings still falls on the last mesh",
             audit.pairings.iter().filter(|one| one.falls()).count(),
             audit.pairings.len()
         ),

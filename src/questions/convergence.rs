@@ -126,12 +126,20 @@ fn refined_column<'a>(
         let is_quoted =
             papers.is_some_and(|path| path.records.iter().any(|one| one.case.cells == QUOTED_CELLS));
         let levels = papers.or(paths.first()).map_or(0, |path| path.records.len());
-        let worth = (papers.is_some(), is_quoted, paths.len().min(ENOUGH_METHODS), levels);
+        // Where another error limits that of the mesh, it does not show how fast that falls.
+        let is_of_mesh = papers.is_some_and(|path| settles(one, path));
+        let worth = (papers.is_some(), is_quoted, is_of_mesh, paths.len().min(ENOUGH_METHODS), levels);
         Ok(Some((worth, paths)).filter(|(_, paths)| !paths.is_empty()))
     })?;
     let Some((one, paths)) = most else { return Ok(None) };
     Ok(SeriesTable::of_paths(one, &ranked(one, paths), Axis::Cells)
         .map(|table| (one.study.name.clone(), table)))
+}
+
+/// Whether the orders along a path have settled.
+fn settles(results: &StudyResults<'_>, path: &Path<'_>) -> bool {
+    let found = SeriesTable::of_paths(results, std::slice::from_ref(path), Axis::Cells);
+    found.is_some_and(|found| found.series.iter().all(|one| one.class().is_some_and(Class::is_settled)))
 }
 
 fn method_of(path: &Path<'_>) -> String {
@@ -237,6 +245,13 @@ mod tests {
             [StudyResults::new(&other, &none, Tier::Full), StudyResults::new(&study, &records, Tier::Full)];
         let found = ask(&results).expect("sound cases").expect("three methods");
         assert_eq!(found.studies, ["s"]);
+        // A finer study in which another error takes over tells less.
+        let text = STUDY.replace("5, 10, 20", "5, 10, 20, 40, 80").replace("[40]", "[160]");
+        let (finer, mut level) = (study_of("finer", &text), records_of(&text));
+        level.iter_mut().flat_map(|record| &mut record.errors).for_each(|row| row.value = 0.1);
+        let both =
+            [StudyResults::new(&finer, &level, Tier::Full), StudyResults::new(&study, &records, Tier::Full)];
+        assert_eq!(ask(&both).expect("sound cases").expect("an answer").studies, ["s"]);
         let told = "`GC-SRI-patch` converges to Terzaghi's solution with compressible water at T_v = 0.1: order 2.00 in the pore \
                     pressure, order 2.00 in the effective stress, order 2.00 in the settlement; the error \
                     of the pore pressure is 40.0 % on 20 cells.";

@@ -105,7 +105,7 @@ fn title_of(precision: &WorkPrecision<'_>) -> String {
 fn chart(precision: &WorkPrecision<'_>) -> Chart {
     let mut chart = Chart::new(
         title_of(precision),
-        ChartAxis::log10("counted work (s)"),
+        ChartAxis::log10("counted work (ms)"),
         ChartAxis::log10("error of the pore pressure, worst of the outputs (–)"),
     );
     chart.size = Size { width: 1000.0, plot_height: 460.0 };
@@ -119,7 +119,7 @@ fn chart(precision: &WorkPrecision<'_>) -> Chart {
         let place = methods.iter().position(|other| *other == method).unwrap_or_default();
         let marker = IntegratorKind::ALL.iter().position(|kind| *kind == case.integrator);
         let name = format!("{method}, {}", case.integrator.name());
-        let points = runs.iter().map(|run| (run.work, run.error)).collect();
+        let points = runs.iter().map(|run| (1e3 * run.work, run.error)).collect();
         let series = Series::new(name, points);
         chart.series.push(series.slot(slots[place]).marker(marker.unwrap_or_default()));
     }
@@ -196,8 +196,8 @@ mod tests {
         assert_eq!(chart.title, "Least work: GIMP to 1 %");
         let series =
             |place: usize| (chart.series[place].name.as_str(), chart.series[place].points.as_slice());
-        assert_eq!(series(0), ("GIMP, implicit", &[(0.011, 0.0071)][..]));
-        assert_eq!(series(1), ("MPM, implicit", &[(0.023, 0.0092)][..]));
+        assert_eq!(series(0), ("GIMP, implicit", &[(11.0, 0.0071)][..]));
+        assert_eq!(series(1), ("MPM, implicit", &[(23.0, 0.0092)][..]));
         assert_ne!(chart.series[0].slot, chart.series[1].slot, "a colour per method");
         assert_eq!(chart.series[0].marker, chart.series[1].marker, "a marker per integrator");
     }

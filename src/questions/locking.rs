@@ -123,7 +123,7 @@ fn figure(rows: &[&SweepRow], ratios: &[f64]) -> Figure {
         let points = ratios.iter().zip(&row.found).filter_map(point).collect();
         chart.series.push(Series::new(row.method.to_string(), points));
     }
-    chart.rules.push(Rule { at: KEPT, label: "lost".to_owned() });
+    chart.rules.push(Rule { at: KEPT, label: number::bound(KEPT) });
     Figure::new("locking-pressure", chart, "The line of a method that does not lock stays level.")
 }
 

@@ -1,4 +1,4 @@
-//! What do other programs reach? Measurements of other programs on the seed column, by `examples/adapters/run.py`, beside the
+//! What do other programs reach? Measurements of other programs on Terzaghi's column, by `examples/adapters/run.py`, beside the
 //! paper's method on as many cells.
 
 use crate::case::contender::PAPERS;
@@ -134,7 +134,7 @@ fn table(beside: &[(&Peer, [Option<f64>; 3])]) -> Table {
     let times = |of: &str| TIME_FACTORS.map(|factor| format!("> {of} at T_v = {factor}")).join(" | ");
     let header =
         format!("program | > cells | time scheme | measured on | {} | {}", times("its error"), times(PAPERS));
-    Table::of("Errors of the pressure on the seed column", columns(&header), rows).file("peers").shown(SHOWN_ROWS).note(
+    Table::of("Errors of the pressure on Terzaghi's column", columns(&header), rows).file("peers").shown(SHOWN_ROWS).note(
         "the output of these programs, run by examples/adapters/run.py; their times are in examples/adapters/results.csv: \
          clocks of another day, and no counted work",
     )

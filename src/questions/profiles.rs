@@ -155,7 +155,9 @@ fn end_of_axis(all: &[Series]) -> f64 {
 pub fn consolidation(shown: &[&Record], own: ReferenceKind) -> Result<Figure, ExactError> {
     let ends = shown.iter().filter_map(|record| record.case.time_factors.last());
     let end = ends.copied().reduce(f64::max).unwrap_or(1.0);
-    let theory = Series::theory(words::theory(own.name()), theory_consolidation(&shown[0].case, own, end)?);
+    let line = theory_consolidation(&shown[0].case, own, end)?;
+    let title = consolidation_title(shown, &line);
+    let theory = Series::theory(words::theory(own.name()), line);
     let run = |(slot, record): (usize, &&Record)| {
         let points = thinned(&computed_consolidation(record), slot, shown.len());
         Series::new(record.case.method.to_string(), points).style(Style::Markers)
@@ -163,7 +165,7 @@ pub fn consolidation(shown: &[&Record], own: ReferenceKind) -> Result<Figure, Ex
     let series: Vec<Series> = std::iter::once(theory).chain(shown.iter().enumerate().map(run)).collect();
     let degree = ChartAxis::linear("degree of consolidation by settlement U (–)");
     let mut chart = Chart::new(
-        settlement_title(shown, own.name()),
+        title,
         ChartAxis::log10("time factor T_v (–)"),
         degree.between(0.0, end_of_axis(&series)).inverted(),
     );
@@ -183,20 +185,35 @@ pub fn off_theory(what: &str, method: &str, found: Option<(f64, f64)>) -> String
     })
 }
 
-/// The settlement of the method that is nearest to theory, and of that which is farthest.
-fn settlement_title(shown: &[&Record], reference: &str) -> String {
-    let off = |record: &&&Record| largest_error(record, Quantity::Settlement, Sample::Surface, reference);
+/// How far the curve of the method that is nearest to a line of theory is from it, and that of the farthest.
+pub fn consolidation_title(shown: &[&Record], theory: &[(f64, f64)]) -> String {
     let name = |record: &Record| record.case.method.to_string();
     let mut ranked: Vec<(&Record, (f64, f64))> =
-        shown.iter().filter_map(|record| Some((*record, off(&record)?))).collect();
+        shown.iter().filter_map(|record| Some((*record, largest_distance(record, theory)?))).collect();
     ranked.sort_by(|a, b| a.1.0.total_cmp(&b.1.0));
-    let nearest = ranked.first().map(|(record, off)| off_theory("settlement", &name(record), Some(*off)));
+    let Some((nearest, (distance, time))) = ranked.first() else {
+        return "Settlement beside theory".to_owned();
+    };
+    let distance = number::significant(*distance, 2);
+    let nearest =
+        format!("U of {} is up to {distance} off, at T_v = {}", name(nearest), number::time_factor(*time));
     let farthest = ranked.last().filter(|_| ranked.len() > 1);
-    let farthest =
-        farthest.map(|(record, off)| format!("; of {} up to {}", name(record), number::percent(off.0)));
-    let title = nearest
-        .map_or("settlement beside theory".to_owned(), |nearest| nearest + &farthest.unwrap_or_default());
-    words::capitalised(&title)
+    let farthest = farthest.map(|(record, (distance, _))| {
+        format!("; of {} up to {}", name(record), number::significant(*distance, 2))
+    });
+    nearest + &farthest.unwrap_or_default()
+}
+
+/// The largest distance of a run's degrees of consolidation from a line of theory over its times, and its time factor.
+fn largest_distance(record: &Record, theory: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let off = |(time, degree): (f64, f64)| {
+        let after = theory.iter().position(|(at, _)| *at >= time)?;
+        let ((start, low), (end, high)) = (theory[after.saturating_sub(1)], theory[after]);
+        let share = if end > start { (time - start) / (end - start) } else { 0.0 };
+        Some(((degree - low - share * (high - low)).abs(), time)).filter(|_| time >= start)
+    };
+    let distances = computed_consolidation(record).into_iter().filter_map(off);
+    distances.max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// The largest error over all outputs, and its time factor.

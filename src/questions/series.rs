@@ -276,7 +276,7 @@ impl<'a> SeriesTable<'a> {
         }));
         if self.has_orders() {
             let why =
-                if one.class().is_some() { "its class has none" } else { "too few levels for an order" };
+                if one.class().is_some() { "the errors give none" } else { "too few levels for an order" };
             row.push(Cell::of(one.order(), Cell::Order, why));
         }
         if self.has_classes() {

@@ -88,19 +88,26 @@ fn title_of(found: &SeriesTable<'_>, measured: &str, lines: &[&Series<'_>], name
         one.order().filter(|_| found.has_orders() && one.class().is_none_or(Class::is_settled))
     };
     let of_step = found.axis == Axis::TimeStep;
-    let named = lines.iter().zip(names).filter_map(|(one, name)| {
+    let ranked = lines.iter().zip(names).filter_map(|(one, name)| {
         let error = one.ends()?[1].1.abs();
         let order = order(one);
         let rank = if of_step { -order? } else { error };
-        Some((rank, name, order, error))
+        let order = order.map(|order| format!("order {}", number::order(order)));
+        let off = (!of_step).then(|| format!("{} at the end", number::percent(error)));
+        Some((rank, name, [order, off].into_iter().flatten().collect::<Vec<_>>().join(", ")))
     });
-    let Some((_, name, order, error)) = named.reduce(|a, b| if b.0 < a.0 { b } else { a }) else {
+    let ranked: Vec<_> = ranked.collect();
+    let Some((_, _, end)) = ranked.iter().reduce(|a, b| if b.0 < a.0 { b } else { a }) else {
         return format!("Error of the {measured}");
     };
-    let order = order.map(|order| format!("order {}", number::order(order)));
-    let off = (!of_step).then(|| format!("{} at the end", number::percent(error)));
-    let end = [order, off].into_iter().flatten().collect::<Vec<_>>().join(", ");
-    let who = if lines.len() > 1 { format!("{name} is best, ") } else { String::new() };
+    // Those that the digits do not tell apart share the place.
+    let best: Vec<_> = ranked.iter().filter(|one| one.2 == *end).map(|one| one.1).collect();
+    let who = match best[..] {
+        _ if lines.len() == 1 => String::new(),
+        [name] => format!("{name} is best, "),
+        [name, ..] => format!("{name} and {} are best, ", count_of(best.len() - 1, "other", "others")),
+        [] => unreachable!("the best is among them"),
+    };
     format!("{}: {who}{end}", words::capitalised(measured))
 }
 

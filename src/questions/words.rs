@@ -20,7 +20,7 @@ const CLASSES: [(&str, &str); 8] = [
     ("superconvergent", "above the formal order"),
     ("oscillatory", "the error goes up and down"),
     ("divergent", "the error grows"),
-    ("floor-limited", "something other than the mesh limits the error"),
+    ("floor-limited", "something other than the mesh limits the error; an order is that before its plateau"),
     ("exact", "the error is round-off only"),
     ("locked", "the body hardly moves"),
 ];

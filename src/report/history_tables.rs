@@ -157,7 +157,7 @@ fn orders_table(found: &[&StudyComparison]) -> Option<Table> {
     let rows = rows.map(|(one, change)| {
         let mut row = vec![Cell::Code(one.study.clone()), Cell::Code(change.series.clone())];
         for state in [&change.before, &change.after] {
-            row.extend([Cell::of(state.order, Cell::Order, "its class has none"), state.class.into()]);
+            row.extend([Cell::of(state.order, Cell::Order, "the errors give none"), state.class.into()]);
         }
         row
     });

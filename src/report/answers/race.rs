@@ -170,7 +170,7 @@ fn budget_table(findings: &RaceFindings) -> Table {
             Cell::Count(one.most_cells(Budget::Twice) as u64),
         ]
     });
-    let heads = "problem | integrator | outputs | > half the budget, cells | > budget, cells | > twice the budget, cells";
+    let heads = "problem | integrator | outputs, time factors | > half the budget, cells | > budget, cells | > twice the budget, cells";
     Table::of("The problems with their outputs and budgets", columns(heads), rows)
 }
 
