@@ -5,6 +5,7 @@ use super::world::{Fields, World};
 use crate::import::SampledState;
 use crate::import::mapping::Mapping;
 use crate::import::nodes::levels;
+use oedometer_exact::ColumnParameters;
 
 /// Number of outputs that are examined, spread over all of them.
 const OUTPUTS: usize = 12;
@@ -17,7 +18,7 @@ const VANISHED: f64 = 1e-6;
 const SEEN: f64 = 0.01;
 /// Largest relative error that a mesh of `N` rows explains, times N².
 const MESH: f64 = 0.3;
-/// Largest shift of times that a mesh explains, over the time in which water diffuses through a row.
+/// Shift of times that a mesh explains, over the time in which water diffuses through a row.
 const MOMENT: f64 = 0.25;
 /// Share of the size of a column that an output has at least, where its own error is judged.
 const SHARE_OF_OUTPUT: f64 = 0.05;
@@ -346,13 +347,18 @@ impl<'a> Given<'a> {
         self.columns.iter().any(|column| !column.field.is_stress())
     }
 
-    /// Whether times are off by no more than a mesh with these rows makes them: a pressure that begins at 0 at the drained
-    /// node has lost half a cell of water, as after π/16 h²/c_v.
-    pub fn is_moment_of_mesh(&self, moment: f64) -> bool {
+    /// Whether the times of a world, or its drainage, are off by no more than a mesh with these rows makes them at every output:
+    /// a pressure that begins at 0 at the drained node has lost half a cell of water, as after `π/16 h²/c_v`.
+    pub fn is_clock_of_mesh(&self, world: &World) -> bool {
         let parameters = &self.own.parameters;
-        let rows = self.sets.iter().map(|set| lines(&set.heights, parameters.height).len()).max();
+        let rows = self.sets.iter().map(|set| levels(&set.heights, parameters.height).len()).max();
         let row = parameters.height / rows.unwrap_or(2).saturating_sub(1).max(1) as f64;
-        moment.abs() < MOMENT * row * row / parameters.soil.coefficient_of_consolidation()
+        let drains = |parameters: &ColumnParameters| parameters.soil.coefficient_of_consolidation();
+        let most = MOMENT * row * row / drains(parameters);
+        let ([clock, moment], faster) = (world.clock, drains(&world.parameters) / drains(parameters));
+        let factor = clock * faster;
+        let is_little = |time: &f64| (factor * time + moment - time).abs() < most;
+        [factor, moment] != [1.0, 0.0] && self.times.iter().all(is_little)
     }
 
     /// The first and the last time after the start, s; 0 where there is none.

@@ -10,8 +10,8 @@ use oedometer_wording::rounded;
 
 /// Most samples in a row that have one sign of an alternating pressure: those of a cell.
 const LONGEST: usize = 4;
-/// Fewest lines of samples that show an alternation.
-const FEWEST_LINES: usize = 6;
+/// Fewest parts of one sign that show an alternation: fewer are any smooth error.
+const FEWEST_PARTS: usize = 6;
 /// Share of the error of every output that an alternation may leave.
 const ALTERNATES: f64 = 0.5;
 /// Values below this share of a column's size are as good as zero, and the share by which one is wrong.
@@ -83,7 +83,8 @@ fn blank(column: &Column, given: &Given<'_>) -> Option<Reading> {
 fn checkerboard(column: &Column, given: &Given<'_>) -> Option<Reading> {
     let up = rank(&column.heights, given.own.parameters.height);
     let along = rank(&column.distances, given.own.parameters.length);
-    if !column.field.is_stress() || up.iter().max()? + 1 < FEWEST_LINES {
+    let lines = up.iter().max()? + 1;
+    if !column.field.is_stress() {
         return None;
     }
     let exact = &column.exact;
@@ -107,7 +108,8 @@ fn checkerboard(column: &Column, given: &Given<'_>) -> Option<Reading> {
             format!("alternates from sample to sample by ± {percent} % around the exact one, a checkerboard");
         is_halved.then(|| reading(said, STABILISATION, [1, 1], left, column))
     };
-    let all = (1..=LONGEST).flat_map(|row| [(row, false), (row, true)]);
+    let all =
+        (1..=LONGEST).filter(|row| lines >= FEWEST_PARTS * row).flat_map(|row| [(row, false), (row, true)]);
     all.filter_map(of).min_by(|a, b| a.left.total_cmp(&b.left))
 }
 

@@ -166,7 +166,11 @@ pub fn of_row(x: &Exact<'_>, row: &Row, is_own: bool) -> Vec<Reading> {
             let Some(left) = left else {
                 continue;
             };
-            let filled = |text: &str| text.replace("{}", &shown(number));
+            let shown_number = shown(number);
+            if shown_number == "1" && matches!(row.number, Number::Linear) && row.plus.is_none() {
+                continue;
+            }
+            let filled = |text: &str| text.replace("{}", &shown_number);
             let mut asked = [&[filled(row.asked)][..], &scale.asked].concat();
             asked.retain(|asked| !(asked.is_empty() || row.units == Units::AnySign && asked == SIGN));
             if asked.is_empty() {

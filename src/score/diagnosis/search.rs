@@ -203,10 +203,8 @@ pub fn explanation(given: &Given<'_>, whole: &Given<'_>, is_part: bool) -> Optio
         if cause.range.is_none() || !(is_any_right || is_enough) {
             // Times go with other units.
             let in_units = || cause.is_of_times.then(|| world_of(cause, given, true)).flatten();
-            let is_of_mesh = |(World { clock, .. }, _): &(World, Reading)| {
-                clock[0] == 1.0 && clock[1] != 0.0 && whole.is_moment_of_mesh(clock[1])
-            };
-            let world = world_of(cause, given, false).or_else(in_units).filter(|found| !is_of_mesh(found));
+            let world = world_of(cause, given, false).or_else(in_units);
+            let world = world.filter(|(world, _)| !whole.is_clock_of_mesh(world));
             all.extend(world.and_then(|world| Explanation::of(world, given, whole)));
             all.sort_by(|a, b| a.open.cmp(&b.open).then(cost(&a.sum).total_cmp(&cost(&b.sum))));
         }
