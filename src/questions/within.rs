@@ -77,7 +77,7 @@ fn table(all: &[QuantityWithin]) -> Table {
     let has = |mark: &str| rows.iter().flatten().any(|cell: &Cell| cell.show().starts_with(mark));
     let notes = [
         has("✗").then(|| {
-            "✗: no run that passes its checks is within the bound; the smallest error is shown".to_owned()
+            "✗: no sound run is within the bound; the smallest error is shown".to_owned()
         }),
         has("•").then(|| "•: not confirmed by a finer mesh".to_owned()),
         has("≥").then(|| "≥: no longer step was tried".to_owned()),
