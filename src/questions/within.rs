@@ -76,9 +76,7 @@ fn table(all: &[QuantityWithin]) -> Table {
         .collect();
     let has = |mark: &str| rows.iter().flatten().any(|cell: &Cell| cell.show().starts_with(mark));
     let notes = [
-        has("✗").then(|| {
-            "✗: no sound run is within the bound; the smallest error is shown".to_owned()
-        }),
+        has("✗").then(|| "✗: no sound run is within the bound; the smallest error is shown".to_owned()),
         has("•").then(|| "•: not confirmed by a finer mesh".to_owned()),
         has("≥").then(|| "≥: no longer step was tried".to_owned()),
     ];
