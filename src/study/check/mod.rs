@@ -107,6 +107,7 @@ impl Study {
                 multiplied_out: 0,
                 purpose,
                 solvers: Vec::new(),
+                refused_solvers: Vec::new(),
                 is_race: false,
                 not_applicable: Vec::new(),
                 warnings: Vec::new(),
@@ -173,6 +174,8 @@ struct Checker<'a> {
     purpose: Purpose,
     /// Attached solvers, whose names are methods too.
     solvers: Vec<ExternalSolver>,
+    /// Names of solvers and results that are refused: who names them makes no other mistake.
+    refused_solvers: Vec<String>,
     /// Whether a sweep names the race.
     is_race: bool,
     /// Methods of the benchmark that the study refuses, with the reason.

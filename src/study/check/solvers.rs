@@ -48,8 +48,10 @@ impl Checker<'_> {
     pub(super) fn attach_solvers(&mut self, file: &StudyFile, case_seconds: f64) {
         for table in &file.solver {
             if self.name_is_free(&table.name, "solver") {
-                let solver = self.solver(table, case_seconds);
-                self.solvers.extend(solver);
+                match self.solver(table, case_seconds) {
+                    Some(solver) => self.solvers.push(solver),
+                    None => self.refused_solvers.push(table.name.to_string()),
+                }
             }
         }
     }
@@ -59,7 +61,10 @@ impl Checker<'_> {
         let mut all = Vec::new();
         for table in &file.result {
             if self.name_is_free(&table.name, "result") {
-                all.extend(self.given_result(table));
+                match self.given_result(table) {
+                    Some(meshes) => all.push(meshes),
+                    None => self.refused_solvers.push(table.name.to_string()),
+                }
             }
         }
         all

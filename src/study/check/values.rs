@@ -85,6 +85,9 @@ impl Checker<'_> {
     fn method_named(&mut self, name: &str, span: TextSpan, scene: &'static Scene) -> Option<SolverName> {
         let of_study = self.solvers.iter().find(|solver| solver.name() == name).map(ExternalSolver::method);
         let Some(method) = Method::named(name).map(SolverName::Own).or(of_study) else {
+            if self.refused_solvers.iter().any(|refused| refused == name) {
+                return None;
+            }
             let mut names = Method::names();
             names.extend(self.solvers.iter().map(|solver| solver.name().to_owned()));
             let names: Vec<&str> = names.iter().map(String::as_str).collect();

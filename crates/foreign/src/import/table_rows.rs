@@ -37,6 +37,8 @@ struct Table<'a> {
     /// For each column with signs between thousands the first number that has one, with its line, and whether nothing else can
     /// be meant.
     thousands: Vec<Option<Thousands>>,
+    /// For each column whose commas may stand between thousands, beside fractions with a point, the first such number.
+    commas: Vec<Option<Thousands>>,
     is_ended: bool,
 }
 
@@ -71,6 +73,8 @@ impl<'a> Table<'a> {
             .trim(csv::Trim::All)
             .has_headers(names.is_none());
         let thousands = thousands_of(&builder, &text, has_decimal_comma, delimiter);
+        let are_inferred = has_decimal_comma && layout.decimal.is_none();
+        let commas = if are_inferred { commas_of(&builder, &text) } else { Vec::new() };
         let mut reader = builder.from_reader(Cursor::new(text));
         let header = if let Some(names) = names {
             csv::StringRecord::from(names)
@@ -88,6 +92,7 @@ impl<'a> Table<'a> {
             has_decimal_comma,
             units,
             thousands,
+            commas,
             is_ended,
         })
     }
@@ -121,13 +126,17 @@ impl<'a> Table<'a> {
 
     /// Doubts about numbers of a column that may have signs between thousands.
     fn doubt(&self, place: usize, table_notes: &mut TableNotes) {
-        if let Some(Some(Thousands { first, line, is_certain: false })) = self.thousands.get(place) {
+        let doubtful = |columns: &[Option<Thousands>]| columns.get(place).cloned().flatten();
+        let thousands = doubtful(&self.thousands).filter(|known| !known.is_certain);
+        let read_as = |known: &Thousands| known.first.replace([',', '.'], "");
+        let of_thousands = thousands
+            .map(|known| (if self.has_decimal_comma { "point" } else { "comma" }, read_as(&known), known));
+        let of_commas = doubtful(&self.commas).map(|known| ("comma", known.first.replace(',', "."), known));
+        if let Some((sign, number, Thousands { first, line, .. })) = of_thousands.or(of_commas) {
             let column = excerpt(self.header.get(place).unwrap_or_default());
-            let sign = if self.has_decimal_comma { "point" } else { "comma" };
-            let whole = first.replace([',', '.'], "");
             table_notes.doubts.push(format!(
                 "{}:{line}: the {sign} of `{first}` in the column `{column}` may be a thousands or a \
-                 decimal separator; it is read as {whole}: write the numbers without it, or set `decimal` \
+                 decimal separator; it is read as {number}: write the numbers without it, or set `decimal` \
                  in [csv]",
                 self.path.display()
             ));
@@ -252,6 +261,34 @@ fn thousands_of(
         }
     }
     found.iter_mut().zip(others).filter(|(_, is_other)| *is_other).for_each(|(known, _)| *known = None);
+    found
+}
+
+/// The columns whose numbers with a comma may all have it between thousands, in a table whose other columns have fractions with a
+/// point: none where those have a comma too, or where one number tells that it begins a fraction.
+fn commas_of(builder: &csv::ReaderBuilder, text: &[u8]) -> Vec<Option<Thousands>> {
+    let (mut found, mut are_fractions): (Vec<Option<Thousands>>, Vec<bool>) = (Vec::new(), Vec::new());
+    let mut have_points = false;
+    let mut reader = builder.from_reader(text);
+    for record in reader.records().map_while(Result::ok) {
+        found.resize(found.len().max(record.len()), None);
+        are_fractions.resize(found.len(), false);
+        let line = record.position().map_or(0, csv::Position::line);
+        for (place, field) in record.iter().enumerate() {
+            have_points |= field.contains('.') && field.parse::<f64>().is_ok();
+            if number_of_thousands(field, false).is_some() {
+                let first = || Thousands { first: field.to_owned(), line, is_certain: false };
+                found[place].get_or_insert_with(first);
+            } else {
+                are_fractions[place] |= field.contains(',');
+            }
+        }
+    }
+    for (known, is_fraction) in found.iter_mut().zip(&are_fractions) {
+        if *is_fraction || !have_points || are_fractions.contains(&true) {
+            *known = None;
+        }
+    }
     found
 }
 

@@ -396,6 +396,38 @@ fn contradictions(mapping: &str, text: &str) -> (usize, Vec<String>) {
 }
 
 #[test]
+fn a_comma_beside_points_may_stand_between_thousands_or_begin_a_fraction() {
+    let source = |decimal: &str| StudySource {
+        name: "map.toml".to_owned(),
+        text: format!("[columns]\nt = \"t\"\ny = \"y\"\np = \"p\"\nu_y = \"\"\n{decimal}"),
+    };
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let path = folder.path().join("result.csv");
+    let frame = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 81.75 };
+    let told = |rows: &str, decimal: &str| {
+        std::fs::write(&path, format!("t;y;p\n{rows}")).expect("a file");
+        let mapping = Mapping::read(&source(decimal)).expect("a mapping");
+        let run = runs_of(&[vec![path.clone()]], &mapping, frame).expect("a run").remove(0);
+        (run.states[0].pressure[0], run.doubts.join(" "))
+    };
+    let (comma, point) = ("[csv]\ndecimal = \",\"\n", "[csv]\ndecimal = \".\"\n");
+    let doubtful = "4.0875;0.25;996,869\n4.0875;0.5;856,241\n";
+    let (pressure, doubt) = told(doubtful, "");
+    assert!(doubt.contains(":2: the comma of `996,869`") && doubt.contains("read as 996.869"), "{doubt}");
+    assert_eq!(pressure, 996.869);
+    for (rows, decimal, read) in [
+        (doubtful, comma, 996.869),
+        ("4;0;996,869\n4;1;856,241\n", "", 996.869),
+        ("4.0875;0.25;996,869\n4.0875;0.5;856,24\n", "", 996.869),
+        ("4.0875;0,25;996,869\n4.0875;0,5;856,241\n", "", 996.869),
+        ("4.0875;0.25;0,869\n4.0875;0.5;0,241\n", "", 0.869),
+    ] {
+        assert_eq!(told(rows, decimal), (read, String::new()), "{rows} {decimal}");
+    }
+    assert_eq!(told(doubtful, point).0, 996_869.0);
+}
+
+#[test]
 fn states_of_one_time_must_agree_and_times_must_not_go_back() {
     let table = |blocks: &[(f64, f64)]| -> String {
         let rows = blocks.iter().flat_map(|(time, factor)| {
