@@ -17,6 +17,8 @@ const ALTERNATES: f64 = 0.5;
 /// Values below this share of a column's size are as good as zero, and the share by which one is wrong.
 const NOTABLE: f64 = 0.01;
 const WRONG: f64 = 3e-3;
+/// Size, SI, below which the decimals that programs print by default show little of a field.
+const FEW_DECIMALS: f64 = 1e-4;
 /// Share of the error that another order may leave.
 const ORDERED: f64 = 0.2;
 /// Share of an error that sits in one place.
@@ -151,7 +153,9 @@ pub fn unexplained(column: &Column, given: &Given<'_>) -> Option<String> {
     let alike =
         column.factor(&varying, &exact, None) * column.size(&exact, None) / column.size(&varying, None);
     let is_unlike = values.len() >= FEW && alike.abs() < UNLIKE && place(column, given).is_none();
-    let array = "is it the wrong array";
+    let is_small = column.size(&column.exact, None) < FEW_DECIMALS;
+    let array = ["is it the wrong array", "is it the wrong array, or written with too few decimals"]
+        [usize::from(is_small)];
     let fault = if column.is_zero() {
         let cause = if column.field.is_stress() { END } else { START };
         let or = format!(", or {}", cause.asked);

@@ -180,7 +180,12 @@ fn an_inaccurate_solver_is_told_nothing() {
 fn an_array_of_zeros_is_named() {
     only(
         &changed(0.0, |state| scale(&mut state.pressure, 0.0)),
-        &["your p is 0 everywhere: is it the wrong array"],
+        &["your p is 0 everywhere: is it the wrong array?"],
+    );
+    // Less than a micrometre, as four decimals show it.
+    only(
+        &changed(0.0, |state| scale(&mut state.displacement, 0.0)),
+        &["your u_y is 0 everywhere: is it the wrong array, or written with too few decimals?"],
     );
 }
 
