@@ -6,6 +6,7 @@ use crate::import::SampledState;
 use crate::import::mapping::Mapping;
 use crate::import::nodes::levels;
 use oedometer_exact::ColumnParameters;
+use std::ops::Range;
 
 /// Number of outputs that are examined, spread over all of them.
 const OUTPUTS: usize = 12;
@@ -98,16 +99,18 @@ pub struct Column {
 }
 
 impl Column {
+    /// Where the values of an output stand, or all.
+    fn places(&self, output: Option<usize>) -> Range<usize> {
+        let before = |output: usize| self.outputs.partition_point(|of| *of < output);
+        output.map_or(0..self.outputs.len(), |output| before(output)..before(output + 1))
+    }
+
     /// The mean product of two lists of this column's length over its scale, at an output or at all.
     fn product(&self, a: &[f64], b: &[f64], output: Option<usize>) -> f64 {
-        let (mut sum, mut count) = (0.0, 0.0_f64);
-        for ((a, b), of) in a.iter().zip(b).zip(&self.outputs) {
-            if output.is_none_or(|output| output == *of) {
-                sum += a / self.scale * (b / self.scale);
-                count += 1.0;
-            }
-        }
-        sum / count.max(1.0)
+        let places = self.places(output);
+        let products = a[places.clone()].iter().zip(&b[places.clone()]);
+        let sum = products.fold(0.0, |sum, (a, b)| sum + a / self.scale * (b / self.scale));
+        sum / (places.len() as f64).max(1.0)
     }
 
     /// Root of the mean square of a list, at an output or at all.
@@ -175,9 +178,8 @@ impl Column {
     }
 
     /// The values of an output.
-    pub fn at_output(&self, output: usize) -> Vec<f64> {
-        let of = self.outputs.iter().zip(&self.values).filter(|(other, _)| **other == output);
-        of.map(|(_, value)| *value).collect()
+    pub fn at_output(&self, output: usize) -> &[f64] {
+        &self.values[self.places(Some(output))]
     }
 
     /// Whether there are several outputs and all have the same values.

@@ -176,13 +176,12 @@ pub fn unexplained(column: &Column, given: &Given<'_>) -> Option<String> {
 pub fn place(column: &Column, given: &Given<'_>) -> Option<String> {
     let off = column.beyond(&column.exact, 1.0);
     let height = given.own.parameters.height;
-    let is_row = |row: &f64| {
-        let of_row = |(off, y): (&f64, &f64)| if (y - row).abs() < 1e-6 * height { *off } else { 0.0 };
-        let there: Vec<f64> = off.iter().zip(&column.heights).map(of_row).collect();
-        column.size(&there, None) > IN_ONE_PLACE * column.size(&off, None)
-    };
     let rows = levels(&column.heights, height);
-    let row = rows.iter().find(|row| off.len() >= FEW && rows.len() > 1 && is_row(row))?;
+    let mut squares = vec![0.0; rows.len()];
+    off.iter().zip(rank(&column.heights, height)).for_each(|(off, row)| squares[row] += off * off);
+    let most = IN_ONE_PLACE * IN_ONE_PLACE * squares.iter().sum::<f64>();
+    let is_seen = off.len() >= FEW && rows.len() > 1;
+    let row = rows.iter().zip(squares).find(|(_, square)| is_seen && *square > most)?.0;
     let percent = digits((100.0 * column.residual).round());
     let at = rounded(*row);
     Some(format!(
